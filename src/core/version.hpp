@@ -1,0 +1,8 @@
+#pragma once
+
+namespace vitrum {
+
+/// Version of vitrum, "major.minor.patch".
+const char* version();
+
+}  // namespace vitrum

@@ -1,0 +1,51 @@
+#pragma once
+// Reading and writing pictures. OpenImageIO stands behind it, in a module that is opened at the first call.
+
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace vitrum {
+
+/// Pixels as they lie in a file, decoded to floats, row 0 at the top.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<glm::vec3> pixels;            ///< width * height; grey is spread over the three channels
+};
+
+/// A named plane of a picture that is to be written. EXR takes several as layers; others take the first.
+struct PictureLayer {
+  std::string name;                         ///< "beauty", "normal", ... ; "" or "beauty" become the plain R, G, B
+  int channels = 3;                         ///< 1 or 3
+  std::vector<float> values;                ///< width * height * channels, linear
+  bool is_colour = true;                    ///< takes the display transform in PNG and the like
+};
+
+/// How linear radiance becomes the values of a PNG: value = transform(radiance * 2^exposure).
+struct DisplaySettings {
+  bool srgb = true;                         ///< false: power 1 / gamma
+  double gamma = 1.8;
+  double exposure = 0.0;                    ///< stops
+};
+
+/// Reads a picture; values are as in the file (0..1 for integer formats), without any colour transform.
+/// Throws Error at `asked_by` for a file that is missing, no picture, cut short, or of more than 2^28 pixels.
+Picture read_picture(const std::string& path, const SourceLocation& asked_by);
+
+/// Checks that a picture can be written to `path`: a known extension, a folder that exists and can be written.
+/// Throws Error; called before rendering begins. Does not open the module.
+void check_writable(const std::string& path);
+
+/// Writes layers to `path`, whole or not at all (a temporary file beside it, then a rename).
+/// .exr: float, linear, all layers. Others (.png, .jpg, .tif, .bmp, .hdr ...): the first layer; integer formats with
+/// the display transform. `metadata` goes into the file's header where the format has room. Throws Error.
+void write_picture(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
+                   const DisplaySettings& display, const std::map<std::string, std::string>& metadata);
+
+/// Opens the image module in the background, so that a later call finds it loaded. Errors come with that call.
+void preload_image_module();
+
+}  // namespace vitrum

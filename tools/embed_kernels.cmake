@@ -1,0 +1,11 @@
+# Writes OUT, a C++ file with the text of every kernel FILE under ROOT. Called by CMakeLists.txt.
+set(text "// Made by tools/embed_kernels.cmake from kernels/. Do not edit.\n#include \"device/kernel_source.hpp\"\n\n")
+string(APPEND text "namespace vitrum {\n\nconst std::vector<KernelFile>& embedded_kernels() {\n")
+string(APPEND text "  static const std::vector<KernelFile> files = {\n")
+foreach(file IN LISTS FILES)
+  file(RELATIVE_PATH name ${ROOT} ${file})
+  file(READ ${file} content)
+  string(APPEND text "      {\"${name}\", R\"~vitrum~(${content})~vitrum~\"},\n")
+endforeach()
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace vitrum\n")
+file(WRITE ${OUT} "${text}")
