@@ -1,0 +1,109 @@
+// What surfaces do to rays that meet them, for camera rays and photons alike: the one place where reflectance is
+// computed.
+//
+// Lanes that meet the same material from the same side with the same media form a group (`Encounter`); all that a
+// material decides is then the same in every lane, and only angles and distances differ. Typically a packet is one or
+// two groups.
+#ifndef VITRUM_INTERACT_H
+#define VITRUM_INTERACT_H
+
+#include "media.h"
+#include "surface.h"
+
+typedef struct {
+  Mask here;                   // the lanes of the group
+  __global const MaterialData* material;
+  uint stack;                  // media that the rays are in
+  int entering;                // 1: the rays meet the front
+} Encounter;
+
+// The group of the first lane that is still to do.
+FUNCTION Encounter next_encounter(const Scene scene, const Mask todo, const SurfacePacket surface, const Uint stack,
+                                  const Mask entering) {
+  const uint lane = first_lane(todo);
+  const uint material = LANE(surface.material, uint, lane);
+  Encounter e;
+  e.stack = LANE(stack, uint, lane);
+  e.entering = LANE(entering, int, lane) != 0;
+  e.here = todo & (surface.material == material) & (stack == e.stack) & (e.entering ? entering : entering == 0);
+  e.material = &scene.materials[material];
+  return e;
+}
+
+typedef struct {
+  Float R, T;                  // shares of the reflected and the refracted ray; T = 0: there is none
+  Vec3 reflected, refracted;   // unit directions
+  uint stack_reflected, stack_refracted;
+} Split;
+
+#if HAS_DIELECTRIC
+
+// Rays along `direction` meet the border of the material's medium.
+FUNCTION Split split_at_dielectric(const Scene scene, const Encounter e, const SurfacePacket surface,
+                                   const Vec3 direction) {
+  const Crossing media = crossing(scene, e.stack, e.material->medium, e.entering);
+  __global const InterfaceData* data = &scene.interfaces[media.from * scene.n_media + media.into];
+  Interface border;
+  border.n_i = data->n_i;
+  border.n_t = data->n_t;
+  border.k_hi = data->k_hi;
+  border.k_lo = data->k_lo;
+
+  // Sides are decided by the geometric normal, angles by the shading normal where it agrees.
+  const Vec3 geometric = e.entering ? surface.geometric_normal : negate3(surface.geometric_normal);
+#if HAS_MESH
+  const Vec3 shading = e.entering ? surface.shading_normal : negate3(surface.shading_normal);
+  const Vec3 normal = select3(dot3(direction, shading) < 0.0f, shading, geometric);
+#else
+  const Vec3 normal = geometric;
+#endif
+
+  Split split;
+  split.stack_reflected = media.before;
+  split.stack_refracted = media.after;
+  if (media.from == media.into) {
+    split.R = 0.0f;
+    split.T = 1.0f;
+    split.reflected = direction;
+    split.refracted = direction;
+    return split;
+  }
+  const Fresnel f = fresnel(border, -dot3(direction, normal));
+#ifdef CONSTANT_REFLECTANCE
+  split.R = f.total ? (Float)1.0f : (Float)CONSTANT_REFLECTANCE;
+  split.T = f.total ? (Float)0.0f : (Float)(1.0f - CONSTANT_REFLECTANCE);
+#else
+  split.R = f.R;
+  split.T = f.T;
+#endif
+  split.reflected = reflected_direction(direction, normal);
+  split.refracted = refracted_direction(border, f, direction, normal);
+#if HAS_MESH
+  // A shading normal can send a ray to the wrong side of the facet; the geometric normal then decides alone.
+  split.reflected = select3(dot3(split.reflected, geometric) > 0.0f, split.reflected,
+                            reflected_direction(direction, geometric));
+  const Mask astray = e.here & (f.total == 0) & (dot3(split.refracted, geometric) >= 0.0f);
+  if (ANY(astray)) {
+    const Fresnel g = fresnel(border, -dot3(direction, geometric));
+    const Vec3 straight = select3(g.total, direction, refracted_direction(border, g, direction, geometric));
+    split.refracted = select3(astray, straight, split.refracted);
+  }
+#endif
+  return split;
+}
+
+#endif
+
+// Mirrored at the shading normal, or at the geometric one where the shading normal would send the ray inside.
+FUNCTION Vec3 mirrored(const Encounter e, const SurfacePacket surface, const Vec3 direction) {
+  const Vec3 geometric = e.entering ? surface.geometric_normal : negate3(surface.geometric_normal);
+#if HAS_MESH
+  const Vec3 shading = e.entering ? surface.shading_normal : negate3(surface.shading_normal);
+  const Vec3 smooth = reflected_direction(direction, shading);
+  return select3(dot3(smooth, geometric) > 0.0f, smooth, reflected_direction(direction, geometric));
+#else
+  return reflected_direction(direction, geometric);
+#endif
+}
+
+#endif

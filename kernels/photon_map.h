@@ -1,0 +1,56 @@
+// The photon map: photons as they are stored, and the grid that they are sorted into.
+//
+// Unsorted, a photon is one float8 {x, y, z, direction, power r, g, b, -}, so that moving it costs one cache line.
+// Sorted, the map is a structure of arrays, field f of photon i at [f * stride + i], so that eight neighbours are read
+// at once.
+//
+// The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two and at least 4 along each axis. So it needs
+// no bounds, far photons cost nothing but a failed test of distance, and the 3 x 3 x 3 cells around a place are never
+// the same cell twice. Cells along x are neighbours in memory.
+#ifndef VITRUM_PHOTON_MAP_H
+#define VITRUM_PHOTON_MAP_H
+
+#include "portability.h"
+
+#define PHOTON_X 0
+#define PHOTON_Y 1
+#define PHOTON_Z 2
+#define PHOTON_DIRECTION 3     // uint: packed
+#define PHOTON_POWER 4         // 3 floats [W]
+#define PHOTON_FIELDS 7
+
+// Cell size [m] as its inverse; log2 of the number of cells along each axis.
+typedef struct {
+  float inverse_cell;
+  uint log2_x, log2_y, log2_z;
+} GridData;
+
+#ifdef __OPENCL_VERSION__
+
+FUNCTION int cell_coordinate(float x, float inverse_cell) {
+  // Far away, cells are told apart no longer, which only makes candidates.
+  return (int)floor(clamp(x * inverse_cell, -1e9f, 1e9f));
+}
+
+FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
+  const uint y = (uint)iy & ((1u << grid.log2_y) - 1u);
+  const uint z = (uint)iz & ((1u << grid.log2_z) - 1u);
+  return ((z << grid.log2_y) | y) << grid.log2_x;
+}
+
+FUNCTION uint cell_of(const GridData grid, float x, float y, float z) {
+  const uint ix = (uint)cell_coordinate(x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
+  return row_of_cells(grid, cell_coordinate(y, grid.inverse_cell), cell_coordinate(z, grid.inverse_cell)) | ix;
+}
+
+// A unit direction in 10 bits a component, enough to tell which side of a surface it comes from.
+FUNCTION uint packed_direction(float x, float y, float z) {
+  const uint a = (uint)((int)rint(clamp(x, -1.0f, 1.0f) * 511.0f) & 1023);
+  const uint b = (uint)((int)rint(clamp(y, -1.0f, 1.0f) * 511.0f) & 1023);
+  const uint c = (uint)((int)rint(clamp(z, -1.0f, 1.0f) * 511.0f) & 1023);
+  return a | b << 10 | c << 20;
+}
+
+#endif
+
+#endif

@@ -1,0 +1,137 @@
+// What lets one header be compiled by OpenCL C on the device and by C++ in the host's tests, and a kernel be written
+// once for SIMD of any width.
+//
+// `Float` is WIDTH floats side by side: WIDTH rays or photons are worked on by one work-item. CPUs take 4, 8 or 16 (a
+// compiler that packs work-items into SIMD lanes by itself gives up at the first surprise), GPUs take 1. Comparisons
+// give masks (`Mask`), `mask ? yes : no` chooses lane by lane, `mask == 0` negates, & and | combine.
+//
+// On the host include it through device/kernel_headers.hpp, which puts everything into namespace vitrum::kernel.
+// Both sides round alike: no contraction (the host compiles with -ffp-contract=off), fma where it is meant, and no
+// built-in (dot, length, mix) whose order of roundings is the device's own business.
+#ifndef VITRUM_PORTABILITY_H
+#define VITRUM_PORTABILITY_H
+
+#ifdef __OPENCL_VERSION__
+
+#pragma OPENCL FP_CONTRACT OFF
+#define FUNCTION inline __attribute__((always_inline))
+
+#ifndef WIDTH
+#error "WIDTH: rays per work-item, 1, 4, 8 or 16"
+#endif
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+
+#if WIDTH == 1
+typedef float Float;
+typedef int Int;
+typedef int Mask;
+typedef uint Uint;
+typedef ulong Ulong;
+#define TO_FLOAT(x) ((float)(x))
+#define TO_INT(x) ((int)(x))
+#define TO_UINT(x) ((uint)(x))
+#define TO_ULONG(x) ((ulong)(x))
+#define AS_FLOAT(x) as_float(x)
+#define AS_UINT(x) as_uint(x)
+#define AS_INT(x) as_int(x)
+#define LOAD(array, i) ((array)[i])
+#define STORE(array, i, value) ((array)[i] = (value))
+#define ANY(mask) ((mask) != 0)
+#define LANES 0u
+#define LANE(value, type, lane) (value)
+#define GATHER(type, array, i) ((array)[i])
+#else
+typedef JOIN(float, WIDTH) Float;
+typedef JOIN(int, WIDTH) Int;
+typedef JOIN(int, WIDTH) Mask;
+typedef JOIN(uint, WIDTH) Uint;
+typedef JOIN(ulong, WIDTH) Ulong;
+#define TO_FLOAT(x) JOIN(convert_float, WIDTH)(x)
+#define TO_INT(x) JOIN(convert_int, WIDTH)(x)
+#define TO_UINT(x) JOIN(convert_uint, WIDTH)(x)
+#define TO_ULONG(x) JOIN(convert_ulong, WIDTH)(x)
+#define AS_FLOAT(x) JOIN(as_float, WIDTH)(x)
+#define AS_UINT(x) JOIN(as_uint, WIDTH)(x)
+#define AS_INT(x) JOIN(as_int, WIDTH)(x)
+#define LOAD(array, i) JOIN(vload, WIDTH)(0, (array) + (i))
+#define STORE(array, i, value) JOIN(vstore, WIDTH)((value), 0, (array) + (i))
+#define ANY(mask) any(mask)
+#define LANE(value, type, lane) (((const type*)&(value))[lane])
+#define GATHER_4(a, i) (a)[(i).s0], (a)[(i).s1], (a)[(i).s2], (a)[(i).s3]
+#define GATHER_8(a, i) GATHER_4(a, i), (a)[(i).s4], (a)[(i).s5], (a)[(i).s6], (a)[(i).s7]
+#if WIDTH == 4
+#define LANES ((Uint)(0, 1, 2, 3))
+#define GATHER(type, a, i) ((type)(GATHER_4(a, i)))
+#elif WIDTH == 8
+#define LANES ((Uint)(0, 1, 2, 3, 4, 5, 6, 7))
+#define GATHER(type, a, i) ((type)(GATHER_8(a, i)))
+#else
+#define LANES ((Uint)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define GATHER(type, a, i)                                                                                            \
+  ((type)(GATHER_8(a, i), (a)[(i).s8], (a)[(i).s9], (a)[(i).sa], (a)[(i).sb], (a)[(i).sc], (a)[(i).sd], (a)[(i).se], \
+          (a)[(i).sf]))
+#endif
+#endif
+
+#else  // C++
+#define FUNCTION inline
+#endif
+
+typedef struct {
+  Float x, y, z;
+} Vec3;
+
+FUNCTION Vec3 make_vec3(Float x, Float y, Float z) {
+  Vec3 v;
+  v.x = x;
+  v.y = y;
+  v.z = z;
+  return v;
+}
+
+FUNCTION Vec3 add3(Vec3 a, Vec3 b) { return make_vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
+FUNCTION Vec3 subtract3(Vec3 a, Vec3 b) { return make_vec3(a.x - b.x, a.y - b.y, a.z - b.z); }
+FUNCTION Vec3 multiply3(Vec3 a, Vec3 b) { return make_vec3(a.x * b.x, a.y * b.y, a.z * b.z); }
+FUNCTION Vec3 scale3(Float s, Vec3 a) { return make_vec3(s * a.x, s * a.y, s * a.z); }
+FUNCTION Vec3 negate3(Vec3 a) { return make_vec3(-a.x, -a.y, -a.z); }
+FUNCTION Vec3 select3(Mask which, Vec3 yes, Vec3 no) {
+  return make_vec3(which ? yes.x : no.x, which ? yes.y : no.y, which ? yes.z : no.z);
+}
+
+// a + s b
+FUNCTION Vec3 along3(Vec3 a, Float s, Vec3 b) { return make_vec3(fma(s, b.x, a.x), fma(s, b.y, a.y), fma(s, b.z, a.z)); }
+
+FUNCTION Float dot3(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+
+FUNCTION Vec3 cross3(Vec3 a, Vec3 b) {
+  return make_vec3(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
+}
+
+FUNCTION Float length3(Vec3 a) { return sqrt(dot3(a, a)); }
+FUNCTION Vec3 normalize3(Vec3 a) { return scale3(1.0f / length3(a), a); }
+
+// fmin and fmax spend instructions on NaN; here the second argument comes out where either is NaN.
+FUNCTION Float larger(Float a, Float b) { return a > b ? a : b; }
+FUNCTION Float smaller(Float a, Float b) { return a < b ? a : b; }
+FUNCTION Float magnitude(Float a) { return larger(a, -a); }
+
+#ifdef __OPENCL_VERSION__
+// The first lane of a mask that is set somewhere.
+FUNCTION uint first_lane(const Mask mask) {
+#if WIDTH == 1
+  return 0;
+#elif WIDTH == 8 && defined(__AVX__)
+  return (uint)__builtin_ctz((uint)__builtin_ia32_movmskps256(as_float8(mask)));
+#else
+  uint lane = 0;
+  while (lane < WIDTH - 1 && LANE(mask, int, lane) == 0) ++lane;
+  return lane;
+#endif
+}
+#endif
+
+FUNCTION Float max_channel(Vec3 a) { return larger(larger(a.x, a.y), a.z); }
+FUNCTION Float largest3(Vec3 a) { return larger(larger(magnitude(a.x), magnitude(a.y)), magnitude(a.z)); }
+
+#endif

@@ -1,0 +1,81 @@
+// The scene's buffers as kernels take them: one list of parameters, one struct. What the scene lacks is not there.
+//
+// A kernel lists `SCENE_PARAMETERS` first and starts with `const Scene scene = SCENE;`. The host sets the arguments in
+// the same order (src/device/device_scene.cpp).
+#ifndef VITRUM_SCENE_H
+#define VITRUM_SCENE_H
+
+#include "switches.h"
+#include "fresnel.cl"
+#include "types.h"
+#if HAS_MESH
+#include "tree_types.h"
+#endif
+
+typedef struct {
+  __global const SphereData* spheres;
+  __global const FlatData* flats;
+  __global const MaterialData* materials;
+  __global const MediumData* media;
+  __global const InterfaceData* interfaces;  // [from * n_media + into]
+  __global const LightData* lights;
+  uint n_spheres, n_flats, n_media;
+#if HAS_MESH
+  __global const TreeNode* nodes;
+  __global const TreeLeaf* leaves;
+  __global const MeshData* meshes;
+  __global const TriangleData* triangles;
+  __global const float* positions;
+  __global const float* normals;
+  __global const float* texcoords;
+  __global const LightFace* faces;
+#endif
+#if HAS_TEXTURES
+  __global const TextureData* textures;
+  __global const float* texels;
+#endif
+} Scene;
+
+#if HAS_MESH
+#define MESH_PARAMETERS                                                                                              \
+  , __global const TreeNode *nodes, __global const TreeLeaf *leaves, __global const MeshData *meshes,                \
+      __global const TriangleData *triangles, __global const float *positions, __global const float *normals,        \
+      __global const float *texcoords, __global const LightFace *faces
+#define MESH_MEMBERS , nodes, leaves, meshes, triangles, positions, normals, texcoords, faces
+#else
+#define MESH_PARAMETERS
+#define MESH_MEMBERS
+#endif
+
+#if HAS_TEXTURES
+#define TEXTURE_PARAMETERS , __global const TextureData *textures, __global const float *texels
+#define TEXTURE_MEMBERS , textures, texels
+#else
+#define TEXTURE_PARAMETERS
+#define TEXTURE_MEMBERS
+#endif
+
+#define SCENE_PARAMETERS                                                                                             \
+  __global const SphereData *spheres, __global const FlatData *flats, __global const MaterialData *materials,        \
+      __global const MediumData *media, __global const InterfaceData *interfaces, __global const LightData *lights,  \
+      const uint n_spheres, const uint n_flats, const uint n_media MESH_PARAMETERS TEXTURE_PARAMETERS
+#define SCENE                                                                                                        \
+  {                                                                                                                  \
+    spheres, flats, materials, media, interfaces, lights, n_spheres, n_flats, n_media MESH_MEMBERS TEXTURE_MEMBERS   \
+  }
+
+// The same vector in every lane.
+FUNCTION Vec3 uniform3(__global const float* values) { return make_vec3(values[0], values[1], values[2]); }
+
+// Three floats from `index` on, another index in each lane.
+#define GATHER3(array, index)                                                                                        \
+  make_vec3(GATHER(Float, array, index), GATHER(Float, (array) + 1, index), GATHER(Float, (array) + 2, index))
+
+// Fields of a table of structs, another entry in each lane. A struct's size is a multiple of 4 bytes.
+#define FIELD(type, element, table, field, index)                                                                    \
+  GATHER(type, (__global const element*)&(table)->field, (index) * (uint)(sizeof(*(table)) / 4))
+#define FIELD3(table, field, index)                                                                                  \
+  make_vec3(FIELD(Float, float, table, field[0], index), FIELD(Float, float, table, field[1], index),                \
+            FIELD(Float, float, table, field[2], index))
+
+#endif

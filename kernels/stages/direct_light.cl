@@ -1,0 +1,141 @@
+// Stage direct_light: the light of one lamp on the surfaces that scatter, with its shadow and highlight.
+// Reads: queue rays, surfaces, scatter [0, count), the scene's shapes and lights. Adds to: shares (beauty).
+#include "exact.h"
+#include "film.h"
+#include "lights.h"
+#include "surface.h"
+#if HAS_MESH
+#include "tree.h"
+#endif
+
+// What reaches the surface from a place on the light, shadows left out.
+typedef struct {
+  Vec3 direction;              // unit, towards the light
+  Float distance;              // [m]
+  Vec3 irradiance;             // across the direction [W/m2]
+} Illumination;
+
+FUNCTION Illumination illumination(const Scene scene, __global const LightData* light, const Vec3 position, Float u,
+                                   Float v, Float u_face) {
+  Illumination in;
+#if LIGHT_KINDS & (1 << LIGHT_SPHERE)
+  if (light->kind == LIGHT_SPHERE) {
+    // Uniform in the cone under which the sphere is seen: only the cosine at the surface is left to chance.
+    const Vec3 to_centre = subtract3(uniform3(light->position), position);
+    const float radius = light->radius;
+    const Float d2 = dot3(to_centre, to_centre);
+    const Float d = sqrt(d2);
+    const Float s2 = smaller(radius * radius / d2, 1.0f);
+    const Float one_minus_cos_max = s2 / (1.0f + sqrt(1.0f - s2));
+    const Float one_minus_cos = u * one_minus_cos_max;
+    const Float sine2 = one_minus_cos * (2.0f - one_minus_cos);
+    Float s, c;
+    sin_cos_turn(v, &s, &c);
+    const Vec3 axis = scale3(1.0f / d, to_centre);
+    const Float r = sqrt(sine2);
+    in.direction = normalize3(in_frame(frame_around(axis), axis, r * c, r * s, 1.0f - one_minus_cos));
+    const Float room = fma(-d2, sine2, (Float)(radius * radius));
+    in.distance = d * (1.0f - one_minus_cos) - sqrt(room > 0.0f ? room : 0.0f);
+    in.irradiance = scale3(6.28318530717958648f * one_minus_cos_max, uniform3(light->emitted));
+    return in;
+  }
+#endif
+  const LightPoint from = point_on_light(scene, light, u, v, face_of_light(scene, light, u_face));
+  if (light->kind == LIGHT_DIRECTIONAL) {
+    in.direction = negate3(from.normal);
+    in.distance = INFINITY;
+    in.irradiance = from.emitted;
+    return in;
+  }
+  const Vec3 to_light = subtract3(from.position, position);
+  const Float d2 = dot3(to_light, to_light);
+  in.distance = sqrt(d2);
+  in.direction = scale3(1.0f / in.distance, to_light);
+  const Float facing = -dot3(in.direction, from.normal);
+  const Float cosine = light->kind == LIGHT_POINT ? (Float)1.0f : facing > 0.0f ? facing : 0.0f;
+  in.irradiance = scale3(cosine * from.area / d2, from.emitted);
+  return in;
+}
+
+// `offset_u`, `offset_v`, `offset_face`: the sample's point of a sequence, shifted at random on each path.
+__kernel void direct_light(SCENE_PARAMETERS, const uint count, const uint stride, const uint light_index,
+                           const float offset_u, const float offset_v, const float offset_face,
+                           __global const float* rays, __global const float* surfaces, __global const float* scatter,
+                           __global float* shares) {
+  const uint i = get_global_id(0) * WIDTH;
+  if (i >= count) return;
+  const Vec3 diffuse = load3(scatter, SCATTER_DIFFUSE, stride, i);
+  Mask wanted = max_channel(diffuse) > 0.0f;
+#if HAS_HIGHLIGHTS
+  const Vec3 specular = load3(scatter, SCATTER_SPECULAR, stride, i);
+  wanted |= max_channel(specular) > 0.0f;
+#endif
+  wanted &= lanes_below(i, count);
+  if (!ANY(wanted)) return;
+  const Scene scene = SCENE;
+  __global const LightData* light = &scene.lights[light_index];
+  const SurfacePacket surface = load_surfaces(surfaces, stride, i);
+  const Vec3 normal = load3(scatter, SCATTER_NORMAL, stride, i);
+
+  Float u = 0.0f;
+  Float v = 0.0f;
+  Float u_face = 0.0f;
+#if LIGHT_KINDS & ~((1 << LIGHT_POINT) | (1 << LIGHT_DIRECTIONAL))
+  const Uint path = hash_pair(load_bits(rays, RAY_PATH, stride, i), (Uint)light_index);
+  u = unit_float(hash32(path + 1)) + offset_u;
+  v = unit_float(hash32(path + 2)) + offset_v;
+  u_face = unit_float(hash32(path + 3)) + offset_face;
+  u -= floor(u);
+  v -= floor(v);
+  u_face -= floor(u_face);
+#endif
+  const Illumination in = illumination(scene, light, surface.position, u, v, u_face);
+  const Float cos_theta = dot3(normal, in.direction);
+  // The light must stand before the facet too, not only before the shading normal.
+  const Float side = dot3(surface.geometric_normal, in.direction) * dot3(surface.geometric_normal, normal);
+  wanted &= (cos_theta > 0.0f) & (side > 0.0f) & (max_channel(in.irradiance) > 0.0f);
+  if (!ANY(wanted)) return;
+
+  RayPacket shadow;
+  shadow.origin = surface.position;
+  shadow.direction = in.direction;
+  shadow.t_min = leaving_t_min(surface, in.direction);
+  shadow.t_max = in.distance - larger((Float)light->clearance, 4e-7f * in.distance);
+  shadow.t_max = in.distance == INFINITY ? INFINITY : shadow.t_max;
+  Mask lit = wanted & (exact_any_hit(scene, shadow, surface.from) == 0);
+#if HAS_MESH
+  for (uint lane = 0; lane < WIDTH; ++lane) {
+    if (LANE(lit, int, lane) == 0) continue;
+    const Ray ray = lane_ray(shadow, lane);
+    if (tree_any(&ray, scene.nodes, scene.leaves)) lit &= LANES != lane;
+  }
+#endif
+
+  // [direct]
+  Vec3 reflected = scale3(0.318309886183790672f, diffuse);
+#if HAS_HIGHLIGHTS
+  // Phong: rho_s (s + 2) / (2 pi) max(0, w_o . w_r)^s, w_r the light's direction mirrored at the normal.
+  const Vec3 w_o = negate3(load3(rays, RAY_DIRECTION, stride, i));
+  const Vec3 w_r = along3(negate3(in.direction), 2.0f * cos_theta, normal);
+  const Float lobe = dot3(w_o, w_r);
+  const Mask bright = lit & (lobe > 0.0f) & (max_channel(specular) > 0.0f);
+  if (ANY(bright)) {
+    const Float power = exp2(load1(scatter, SCATTER_SHININESS, stride, i) * log2(lobe > 0.0f ? lobe : 1.0f));
+    reflected = add3(reflected, scale3(bright ? power : 0.0f, specular));
+  }
+#endif
+  Vec3 share = multiply3(reflected, scale3(lit ? cos_theta : 0.0f, in.irradiance));
+#if HAS_ABSORPTION
+  // Glass casts shadows, so the light has come all the way through the medium that the surface lies in.
+  const Uint medium = load_bits(rays, RAY_MEDIA, stride, i) & 0xffu;
+  if (ANY(lit & (medium != 0))) {
+    const Vec3 sigma_a = FIELD3(scene.media, sigma_a, lit ? medium : (Uint)0);
+    const Float way = smaller(in.distance, 3e38f);
+    share = multiply3(share, make_vec3(transmittance(sigma_a.x, way), transmittance(sigma_a.y, way),
+                                       transmittance(sigma_a.z, way)));
+  }
+#endif
+  // [/direct]
+  store3(shares, SHARE_BEAUTY, stride, i,
+         select3(lit, add3(load3(shares, SHARE_BEAUTY, stride, i), share), load3(shares, SHARE_BEAUTY, stride, i)));
+}

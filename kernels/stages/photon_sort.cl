@@ -1,0 +1,65 @@
+// Stage photon_sort: a stable counting sort of the photon map into its grid.
+// Each work-item minds one of `blocks` equal ranges of photons; offsets[cell * blocks + block].
+#include "queue.h"
+#include "photon_map.h"
+
+// Reads: photons. Writes: offsets = the number of photons of each cell in each block. offsets starts at 0.
+__kernel void sort_count(const GridData grid, const uint count, const uint blocks, __global const float8* photons,
+                         __global uint* offsets) {
+  const uint block = get_global_id(0);
+  if (block >= blocks) return;
+  const uint last = (uint)((ulong)count * (block + 1) / blocks);
+  for (uint i = (uint)((ulong)count * block / blocks); i < last; ++i) {
+    const float8 photon = photons[i];
+    ++offsets[cell_of(grid, photon.s0, photon.s1, photon.s2) * blocks + block];
+  }
+}
+
+// Turns counts into places in three steps: the sum of each of `parts` ranges of cells, what comes before each range,
+// then the places within. first[cell] is where a cell starts, first[cells] the number of photons.
+__kernel void sort_sum(const uint cells, const uint blocks, const uint parts, __global const uint* offsets,
+                       __global uint* sums) {
+  const uint part = get_global_id(0);
+  if (part >= parts) return;
+  const uint last = (uint)((ulong)cells * (part + 1) / parts) * blocks;
+  uint sum = 0;
+  for (uint i = (uint)((ulong)cells * part / parts) * blocks; i < last; ++i) sum += offsets[i];
+  sums[part] = sum;
+}
+
+__kernel void sort_place(const uint cells, const uint blocks, const uint parts, __global const uint* sums,
+                         __global uint* offsets, __global uint* first) {
+  const uint part = get_global_id(0);
+  if (part >= parts) return;
+  uint place = 0;
+  for (uint p = 0; p < part; ++p) place += sums[p];
+  const uint last = (uint)((ulong)cells * (part + 1) / parts);
+  for (uint cell = (uint)((ulong)cells * part / parts); cell < last; ++cell) {
+    first[cell] = place;
+    for (uint block = 0; block < blocks; ++block) {
+      const uint n = offsets[cell * blocks + block];
+      offsets[cell * blocks + block] = place;
+      place += n;
+    }
+  }
+  if (part == parts - 1) first[cells] = place;
+}
+
+// Moves each photon to its place in the structure of arrays.
+__kernel void sort_scatter(const GridData grid, const uint count, const uint stride, const uint blocks,
+                           __global const float8* photons, __global uint* offsets, __global float* map) {
+  const uint block = get_global_id(0);
+  if (block >= blocks) return;
+  const uint last = (uint)((ulong)count * (block + 1) / blocks);
+  for (uint i = (uint)((ulong)count * block / blocks); i < last; ++i) {
+    const float8 photon = photons[i];
+    const uint to = offsets[cell_of(grid, photon.s0, photon.s1, photon.s2) * blocks + block]++;
+    map[PHOTON_X * stride + to] = photon.s0;
+    map[PHOTON_Y * stride + to] = photon.s1;
+    map[PHOTON_Z * stride + to] = photon.s2;
+    map[PHOTON_DIRECTION * stride + to] = photon.s3;
+    map[(PHOTON_POWER + 0) * stride + to] = photon.s4;
+    map[(PHOTON_POWER + 1) * stride + to] = photon.s5;
+    map[(PHOTON_POWER + 2) * stride + to] = photon.s6;
+  }
+}

@@ -1,0 +1,28 @@
+// What the scene needs, as -D switches made by the host's scene_features (src/scene/features.hpp). A switch that is off
+// compiles to nothing. A missing one is our bug, so it stops the build here and not as a wrong picture.
+#ifndef VITRUM_SWITCHES_H
+#define VITRUM_SWITCHES_H
+
+#ifndef HAS_MESH
+#error "HAS_MESH: 1 if there are triangle meshes, and so a tree"
+#endif
+#ifndef HAS_DIELECTRIC
+#error "HAS_DIELECTRIC: 1 if light is refracted anywhere"
+#endif
+#ifndef HAS_MEDIA_STACK
+#error "HAS_MEDIA_STACK: 1 if media may touch or overlap; 0 lets a ray be in one medium at most"
+#endif
+#ifndef HAS_ABSORPTION
+#error "HAS_ABSORPTION: 1 if any medium absorbs"
+#endif
+#ifndef HAS_TEXTURES
+#error "HAS_TEXTURES: 1 if any surface has a texture"
+#endif
+#ifndef HAS_HIGHLIGHTS
+#error "HAS_HIGHLIGHTS: 1 if any surface has a Phong term"
+#endif
+#ifndef LIGHT_KINDS
+#error "LIGHT_KINDS: a bit set of the kinds of light in the scene, 1 << LIGHT_..."
+#endif
+
+#endif

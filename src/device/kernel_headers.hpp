@@ -1,0 +1,38 @@
+#pragma once
+// The kernels' shared headers compiled as C++, in namespace vitrum::kernel: structs of the buffers, field numbers, and
+// fresnel.cl for the tests. One lane wide.
+
+#include <cmath>
+#include <cstdint>
+
+namespace vitrum::kernel {
+
+using uint = uint32_t;
+using ulong = uint64_t;
+using Float = float;
+using Int = int;
+using Mask = bool;
+using Uint = uint32_t;
+using std::exp;
+using std::fma;
+using std::sqrt;
+
+#include "film.h"
+#include "fresnel.cl"
+#include "outcome.h"
+#include "photon_map.h"
+#include "queue_fields.h"
+#include "sequence.h"
+#include "types.h"
+
+static_assert(sizeof(SphereData) == 32);
+static_assert(sizeof(FlatData) == 80);
+static_assert(sizeof(MaterialData) == 64);
+static_assert(sizeof(MediumData) == 32);
+static_assert(sizeof(InterfaceData) == 16);
+static_assert(sizeof(LightData) == 96);
+static_assert(sizeof(LightFace) == 32);
+static_assert(sizeof(TextureData) == 48);
+static_assert(sizeof(CameraData) == 72);
+
+}  // namespace vitrum::kernel

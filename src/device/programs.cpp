@@ -1,0 +1,84 @@
+#include "device/programs.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <set>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "device/kernel_source.hpp"
+
+namespace vitrum {
+namespace {
+
+std::string kernel_text(const KernelFiles& files, const std::string& name) {
+  if (files.folder.empty()) {
+    for (const KernelFile& file : embedded_kernels())
+      if (file.name == name) return file.text;
+    throw Error({"kernels/" + name, 0, 0}, "this kernel file is not in the binary", "rebuild vitrum");
+  }
+  const std::string path = files.folder + "/" + name;
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  if (std::filesystem::is_regular_file(path)) text << in.rdbuf();
+  if (!std::filesystem::is_regular_file(path) || !in)
+    throw Error({path, 0, 0}, "this kernel file cannot be read", "give --kernels the folder kernels/ of vitrum's sources");
+  return text.str();
+}
+
+void expand(const KernelFiles& files, const std::string& name, std::set<std::string>& seen, std::string& out) {
+  if (!seen.insert(name).second) return;
+  std::istringstream lines(kernel_text(files, name));
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.rfind("#include \"", 0) == 0) {
+      expand(files, line.substr(10, line.find('"', 10) - 10), seen, out);
+      out += "#line " + std::to_string(number + 1) + " \"" + name + "\"\n";
+    } else {
+      out += line + '\n';
+    }
+  }
+}
+
+}  // namespace
+
+std::string stage_source(const KernelFiles& files, const std::string& stage) {
+  std::set<std::string> seen;
+  std::string out;
+  expand(files, "stages/" + stage + ".cl", seen, out);
+  return out;
+}
+
+Programs::Programs(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
+                   const std::string& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string all_options = "-cl-std=CL1.2" + options;
+  std::map<std::string, std::future<cl::Program>> building;
+  for (const std::string& stage : stages) {
+    const std::string source = stage_source(files, stage);
+    if (!files.dump_folder.empty()) {
+      std::filesystem::create_directories(files.dump_folder);
+      std::ofstream dump(files.dump_folder + "/" + stage + ".cl");
+      dump << "// " << all_options << " -DWIDTH=" << device.width() << "\n" << source;
+      if (!dump)
+        throw Error({files.dump_folder, 0, 0}, "kernels cannot be written here", "give --dump-kernels another folder");
+    }
+    building[stage] = std::async(std::launch::async, [&device, stage, source, all_options] {
+      return device.build("stages/" + stage + ".cl", source, all_options);
+    });
+  }
+  for (auto& [stage, program] : building) programs_[stage] = program.get();
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+cl::Kernel Programs::kernel(const std::string& stage, const std::string& name) const {
+  const auto found = programs_.find(stage);
+  assert(found != programs_.end());
+  return cl::Kernel(found->second, name.c_str());
+}
+
+}  // namespace vitrum

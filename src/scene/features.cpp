@@ -1,0 +1,88 @@
+#include "scene/features.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace vitrum {
+namespace {
+
+bool is_nonzero(const Spectrum& s) { return s.x != 0.0 || s.y != 0.0 || s.z != 0.0; }
+
+}  // namespace
+
+Features scene_features(const Scene& scene) {
+  Features f;
+  // Only materials that some surface has count.
+  std::vector<bool> used(scene.materials.size(), false);
+  size_t media_shapes = 0;
+  for (const Shape& shape : scene.shapes) {
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
+      f.mesh = true;
+      for (uint32_t material : mesh->materials) used[material] = true;
+      media_shapes += std::any_of(mesh->materials.begin(), mesh->materials.end(), [&](uint32_t m) {
+        return scene.materials[m].surface == Surface::dielectric;
+      });
+    } else {
+      used[shape.material] = true;
+      media_shapes += scene.materials[shape.material].surface == Surface::dielectric;
+    }
+  }
+  bool specular_surface = false;
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    if (!used[i]) continue;
+    const Material& m = scene.materials[i];
+    f.dielectric |= m.surface == Surface::dielectric;
+    f.absorption |= m.surface == Surface::dielectric && is_nonzero(m.absorption);
+    f.textures |= scene.render.textures && m.diffuse_texture != none;
+    f.highlights |= scene.render.lights && is_nonzero(m.specular);
+    specular_surface |= m.surface == Surface::dielectric || m.surface == Surface::mirror;
+  }
+  // With a single body of one medium a ray is inside it or it is not.
+  f.media_stack = media_shapes > 1;
+  for (const Light& light : scene.lights) f.light_kinds |= 1u << light.emitter.index();
+  f.lights = scene.render.lights && !scene.lights.empty();
+  f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;
+  if (f.dielectric) f.constant_reflectance = scene.render.constant_reflectance;
+  return f;
+}
+
+std::string Features::build_options() const {
+  auto on = [](const char* name, bool value) { return std::string(" -D") + name + (value ? "=1" : "=0"); };
+  std::string options = on("HAS_MESH", mesh) + on("HAS_DIELECTRIC", dielectric) + on("HAS_MEDIA_STACK", media_stack) +
+                        on("HAS_ABSORPTION", absorption) + on("HAS_TEXTURES", textures) +
+                        on("HAS_HIGHLIGHTS", highlights) + " -DLIGHT_KINDS=" + std::to_string(light_kinds);
+  if (constant_reflectance) {
+    char text[64];
+    std::snprintf(text, sizeof text, " -DCONSTANT_REFLECTANCE=%.9ef", *constant_reflectance);
+    options += text;
+  }
+  return options;
+}
+
+std::string Features::names() const {
+  std::string text;
+  auto add = [&text](bool on, const char* name) {
+    if (on) text += (text.empty() ? "" : ", ") + std::string(name);
+  };
+  add(mesh, "mesh");
+  add(dielectric, "dielectric");
+  add(media_stack, "media stack");
+  add(absorption, "absorption");
+  add(textures, "textures");
+  add(highlights, "highlights");
+  add(constant_reflectance.has_value(), "constant reflectance");
+  add(lights, "direct light");
+  add(caustics, "caustics");
+  return text.empty() ? "none" : text;
+}
+
+std::vector<std::string> stages_for(const Features& f) {
+  std::vector<std::string> stages = {"camera_generate", "trace", "camera_shade", "camera_queue", "film"};
+  if (f.lights) stages.push_back("direct_light");
+  if (f.caustics)
+    for (const char* stage : {"photon_emit", "photon_interact", "photon_store", "photon_sort", "gather"})
+      stages.push_back(stage);
+  return stages;
+}
+
+}  // namespace vitrum

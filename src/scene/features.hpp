@@ -1,0 +1,36 @@
+#pragma once
+// What a scene needs of the renderer: a pure function of the scene, so that what it does not use costs it nothing.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace vitrum {
+
+/// One switch for each thing that a kernel can be compiled without (kernels/switches.h).
+struct Features {
+  bool mesh = false;            ///< triangle meshes, and so a tree
+  bool dielectric = false;      ///< light is refracted somewhere
+  bool media_stack = false;     ///< media may touch, overlap or hold the eye or a light
+  bool absorption = false;      ///< some medium absorbs
+  bool textures = false;
+  bool highlights = false;      ///< some surface has a Phong term
+  bool lights = false;          ///< direct light is computed
+  bool caustics = false;        ///< photons are traced and gathered
+  unsigned light_kinds = 0;     ///< bit set, 1 << LIGHT_... of kernels/types.h
+  std::optional<double> constant_reflectance;
+
+  /// The switches as options for the OpenCL compiler.
+  std::string build_options() const;
+  /// "mesh, dielectric, ..." for the log.
+  std::string names() const;
+};
+
+Features scene_features(const Scene& scene);
+
+/// Names of the kernel stages (kernels/stages/NAME.cl) that will be built for these features.
+std::vector<std::string> stages_for(const Features& features);
+
+}  // namespace vitrum
