@@ -93,6 +93,10 @@ uint32_t material_of(const Scene& scene, Piece piece) {
   return mesh ? mesh->materials[piece.primitive] : shape.material;
 }
 
+bool is_glass(const Scene& scene, Piece piece) {
+  return scene.materials[material_of(scene, piece)].surface == Surface::dielectric;
+}
+
 // Interpolated from three values of a mesh; none where the mesh or the triangle has no such values.
 template <typename Value>
 std::optional<Value> interpolated(const auto& values, const std::vector<glm::uvec3>& indices, const Candidate& at) {
@@ -136,12 +140,12 @@ double coincidence(double size) { return 1e-10 * std::max(1.0, size); }
 }  // namespace
 
 std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray) {
-  // A piece that coincides with one just left may lie behind the origin by a rounding.
-  const double behind = -coincidence(largest(ray.origin));
+  // At the origin of a ray that leaves a surface lie that piece's neighbours, by a rounding ahead or behind.
+  const double here = coincidence(largest(ray.origin));
   std::vector<Candidate> ahead;
   for_each_on_line(scene, ray, [&](const Candidate& candidate) {
-    const bool is_left = std::find(ray.left.begin(), ray.left.end(), candidate.piece) != ray.left.end();
-    if (candidate.t > (is_left ? -behind : behind)) ahead.push_back(candidate);
+    const bool is_contact = ray.from_contact && !is_glass(scene, candidate.piece);
+    if (candidate.t > (is_contact ? -here : ray.left.empty() ? 0 : here)) ahead.push_back(candidate);
   });
   if (ahead.empty()) return std::nullopt;
 
@@ -156,11 +160,10 @@ std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray) {
   std::set<std::tuple<uint32_t, uint32_t, bool>> bodies;
   for (const Candidate& candidate : ahead) {
     hit.coincident.push_back(candidate.piece);
-    const uint32_t material = material_of(scene, candidate.piece);
-    if (scene.materials[material].surface != Surface::dielectric) continue;
+    if (!is_glass(scene, candidate.piece)) continue;
     hit.glass.push_back(candidate.piece);
     const bool entering = glm::dot(ray.direction, front_normal(scene, candidate.piece, hit.position)) < 0;
-    bodies.insert({candidate.piece.shape, material, entering});  // once for both sides of a shared edge
+    bodies.insert({candidate.piece.shape, material_of(scene, candidate.piece), entering});  // once for both sides of a shared edge
   }
   for (const auto& [shape, material, entering] : bodies) hit.passages.push_back({material, entering});
   return hit;

@@ -18,12 +18,13 @@ struct Piece {
   auto operator<=>(const Piece&) const = default;
 };
 
-/// A half-line. Pieces in `left` lie at the origin and belong to what the ray leaves: they are not met there again
-/// (the far side of a sphere is), which needs no offset of the origin.
+/// A half-line. Pieces in `left` lie at the origin and belong to what the ray leaves: they are not met again (but for
+/// the far side of a sphere), and neither is what touches them there, so the origin needs no offset.
 struct Ray {
   glm::dvec3 origin{0.0};                   ///< [m]
   glm::dvec3 direction{0, 0, 1};            ///< unit length
-  std::vector<Piece> left;
+  std::vector<Piece> left;                  ///< empty for a ray that starts in the open
+  bool from_contact = false;                ///< opaque pieces at the origin are met: they lie behind the glass just left
 };
 
 struct Hit {

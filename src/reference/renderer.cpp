@@ -127,7 +127,7 @@ Spectrum Tracer::direct_light(const Branch& branch, const Hit& hit, const Materi
     const Incoming from = incoming(light, hit.position);
     const double cos_theta = glm::dot(normal, from.direction);
     const bool in_front = cos_theta > 0 && glm::dot(towards_viewer(hit, hit.geometric_normal), from.direction) > 0;
-    const bool lit = in_front && !is_occluded(scene_, {hit.position, from.direction, hit.coincident}, from.distance);
+    const bool lit = in_front && !is_occluded(scene_, {hit.position, from.direction, hit.coincident, false}, from.distance);
     record(sample.decisions.shadows, lit);
     if (!lit) continue;
     const Spectrum irradiance = from.irradiance * cos_theta * transmittance(sigma_a, from.distance);
@@ -165,7 +165,7 @@ void Tracer::split_at_glass(const Branch& branch, const Hit& hit, const Crossing
 
 void Tracer::follow_mirrored(const Branch& branch, const Hit& hit, const glm::dvec3& normal, double share) {
   Branch next = branch;
-  next.ray = {hit.position, reflected_direction(branch.ray.direction, normal), hit.coincident};
+  next.ray = {hit.position, reflected_direction(branch.ray.direction, normal), hit.coincident, false};
   next.throughput *= share;
   follow_or_cut(std::move(next));
 }
@@ -174,7 +174,7 @@ void Tracer::follow_mirrored(const Branch& branch, const Hit& hit, const glm::dv
 void Tracer::follow_refracted(const Branch& branch, const Hit& hit, const glm::dvec3& direction, double share,
                               Media media) {
   Branch next = branch;
-  next.ray = {hit.position, direction, hit.glass};
+  next.ray = {hit.position, direction, hit.glass, true};
   next.throughput *= share;
   next.media = std::move(media);
   follow_or_cut(std::move(next));
@@ -210,7 +210,7 @@ Sample Renderer::at(const glm::dvec2& position) const {
   const double y = (scene_.film.height / 2.0 - position.y) * pixel;
 
   Tracer tracer(scene_, filling(scene_, media_at_eye_));
-  tracer.follow({{camera.eye, glm::normalize(forward + x * right + y * up), {}}, Spectrum(1.0), 0, media_at_eye_});
+  tracer.follow({{camera.eye, glm::normalize(forward + x * right + y * up), {}, false}, Spectrum(1.0), 0, media_at_eye_});
   return tracer.sample;
 }
 
