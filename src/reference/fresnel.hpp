@@ -18,7 +18,8 @@ struct Fresnel {
 };
 
 /// From index `n_i` into `n_t` at the incident cosine in [0, 1] (above 1 counts as 1). Hecht, Optics, 4.34 to 4.45:
-/// r_perp = (n_i cos_i - n_t cos_t) / (n_i cos_i + n_t cos_t), r_par = (n_t cos_i - n_i cos_t) / (n_t cos_i + n_i cos_t).
+/// r_perp = (n_i cos_i - n_t cos_t) / (n_i cos_i + n_t cos_t),
+/// r_par = (n_t cos_i - n_i cos_t) / (n_t cos_i + n_i cos_t).
 /// Equal indices are no interface: R = 0, T = 1 at every angle.
 Fresnel fresnel(double n_i, double n_t, double cos_theta_i);
 

@@ -24,11 +24,11 @@ Corners corners_of(const Triangle& triangle) { return {triangle.a, triangle.b, t
 
 Corners corners_of(const Mesh& mesh, uint32_t primitive) {
   const glm::uvec3 index = mesh.triangles[primitive];
-  return {glm::dvec3(mesh.positions[index.x]), glm::dvec3(mesh.positions[index.y]), glm::dvec3(mesh.positions[index.z])};
+  return {mesh.positions[index.x], mesh.positions[index.y], mesh.positions[index.z]};
 }
 
-// Weights by signed volumes (Plücker): an edge's volume is exactly negated in the neighbour that runs along it the other
-// way, and 0 counts for both, so no ray slips between them.
+// Weights by signed volumes (Pluecker): an edge's volume is exactly negated in the neighbour, which runs along it the
+// other way, and 0 counts for both, so no ray slips between them.
 std::optional<Candidate> met(const Ray& ray, const Corners& corners, Piece piece) {
   const glm::dvec3 a = corners.a - ray.origin, b = corners.b - ray.origin, c = corners.c - ray.origin;
   const double wa = glm::dot(ray.direction, glm::cross(c, b));
@@ -45,7 +45,9 @@ std::optional<Candidate> met(const Ray& ray, const Corners& corners, Piece piece
 // Calls visit(candidate) for everything on the whole line, but for what the ray leaves.
 template <typename Visit>
 void for_each_on_line(const Scene& scene, const Ray& ray, const Visit& visit) {
-  const auto is_left = [&](Piece piece) { return std::find(ray.left.begin(), ray.left.end(), piece) != ray.left.end(); };
+  const auto is_left = [&](Piece piece) {
+    return std::find(ray.left.begin(), ray.left.end(), piece) != ray.left.end();
+  };
   const auto visit_triangle = [&](const Corners& corners, Piece piece) {
     if (is_left(piece)) return;
     if (const auto candidate = met(ray, corners, piece)) visit(*candidate);
@@ -163,7 +165,8 @@ std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray) {
     if (!is_glass(scene, candidate.piece)) continue;
     hit.glass.push_back(candidate.piece);
     const bool entering = glm::dot(ray.direction, front_normal(scene, candidate.piece, hit.position)) < 0;
-    bodies.insert({candidate.piece.shape, material_of(scene, candidate.piece), entering});  // once for both sides of a shared edge
+    // A set, so that both sides of a shared edge count once.
+    bodies.insert({candidate.piece.shape, material_of(scene, candidate.piece), entering});
   }
   for (const auto& [shape, material, entering] : bodies) hit.passages.push_back({material, entering});
   return hit;

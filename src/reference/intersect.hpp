@@ -24,7 +24,7 @@ struct Ray {
   glm::dvec3 origin{0.0};                   ///< [m]
   glm::dvec3 direction{0, 0, 1};            ///< unit length
   std::vector<Piece> left;                  ///< empty for a ray that starts in the open
-  bool from_contact = false;                ///< opaque pieces at the origin are met: they lie behind the glass just left
+  bool from_contact = false;                ///< opaque pieces at the origin are met: they lie behind the glass
 };
 
 struct Hit {

@@ -27,7 +27,7 @@ enum Event : uint64_t { missed = 1, passed, mirrored, split, totally_reflected, 
 // A ray with what it carries to the eye.
 struct Branch {
   Ray ray;
-  Spectrum throughput{1.0};                 // R, T and transmittances on the way to the eye, without the n^2 of radiance
+  Spectrum throughput{1.0};                 // R, T and transmittances on the way to the eye, without n^2
   int surfaces_met = 0;
   Media media;
 };
@@ -127,7 +127,8 @@ Spectrum Tracer::direct_light(const Branch& branch, const Hit& hit, const Materi
     const Incoming from = incoming(light, hit.position);
     const double cos_theta = glm::dot(normal, from.direction);
     const bool in_front = cos_theta > 0 && glm::dot(towards_viewer(hit, hit.geometric_normal), from.direction) > 0;
-    const bool lit = in_front && !is_occluded(scene_, {hit.position, from.direction, hit.coincident, false}, from.distance);
+    const Ray shadow_ray{hit.position, from.direction, hit.coincident, false};
+    const bool lit = in_front && !is_occluded(scene_, shadow_ray, from.distance);
     record(sample.decisions.shadows, lit);
     if (!lit) continue;
     const Spectrum irradiance = from.irradiance * cos_theta * transmittance(sigma_a, from.distance);
@@ -210,7 +211,8 @@ Sample Renderer::at(const glm::dvec2& position) const {
   const double y = (scene_.film.height / 2.0 - position.y) * pixel;
 
   Tracer tracer(scene_, filling(scene_, media_at_eye_));
-  tracer.follow({{camera.eye, glm::normalize(forward + x * right + y * up), {}, false}, Spectrum(1.0), 0, media_at_eye_});
+  const Ray ray{camera.eye, glm::normalize(forward + x * right + y * up), {}, false};
+  tracer.follow({ray, Spectrum(1.0), 0, media_at_eye_});
   return tracer.sample;
 }
 

@@ -50,6 +50,11 @@ TEST_CASE("reference Fresnel: small differences of index and grazing angles keep
   // Head-on R = (n - 1)^2 / (n + 1)^2; and T -> 2 cos_i (n^2 + 1) / sqrt(n^2 - 1) as cos_i -> 0.
   const double delta = 0x1p-23;
   CHECK(close(fresnel(1, 1 + delta, 1).R, delta * delta / 4 / (1 + delta), 1e-13));
+  // Away from it by the form that does not cancel: r_perp = -(n^2 - 1) / (c + sqrt(c^2 + n^2 - 1))^2.
+  const long double k = static_cast<long double>(delta) * (2 + delta);
+  for (const long double c : {0.9L, 0.5L, 0.1L, 1e-3L})
+    CHECK(close(fresnel(1, 1 + delta, static_cast<double>(c)).r_perp,
+                static_cast<double>(-k / std::pow(static_cast<double>(c) + std::sqrt(c * c + k), 2.0L)), 1e-14));
   for (const double cos_i : {1e-10, 1e-30, 1e-38})
     CHECK(close(fresnel(1, 1.5, cos_i).T, 2 * cos_i * (1.5 * 1.5 + 1) / std::sqrt(1.5 * 1.5 - 1), 1e-9));
 }
