@@ -64,7 +64,7 @@ class EarClipper {
       }
     }
     emit(ring_[corner].previous, corner, ring_[corner].next);
-    return is_simple;
+    return is_simple && turn(corner) >= 0;
   }
 
  private:
