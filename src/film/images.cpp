@@ -69,20 +69,21 @@ struct Format {
   std::string extension;
   bool is_linear = false;      ///< floats, without the display transform
   bool takes_layers = false;
+  bool takes_grey = true;      ///< else grey is spread over R, G, B
 };
 
 /// The format that the name asks for. Throws Error at {path}.
 Format format_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  static const std::array<Format, 8> formats{{{"exr", true, true},
-                                              {"hdr", true, false},
-                                              {"png", false, false},
-                                              {"jpg", false, false},
-                                              {"jpeg", false, false},
-                                              {"tif", false, false},
-                                              {"tiff", false, false},
-                                              {"bmp", false, false}}};
+  static const std::array<Format, 8> formats{{{"exr", true, true, true},
+                                              {"hdr", true, false, false},
+                                              {"png", false, false, true},
+                                              {"jpg", false, false, true},
+                                              {"jpeg", false, false, true},
+                                              {"tif", false, false, true},
+                                              {"tiff", false, false, true},
+                                              {"bmp", false, false, true}}};
   for (const Format& format : formats) {
     if (extension == "." + format.extension) return format;
   }
@@ -124,17 +125,39 @@ Channels interleaved(const std::vector<PictureLayer>& layers, size_t pixels) {
   return all;
 }
 
-/// The first layer as a screen is to show it.
-Channels for_display(const PictureLayer& layer, const DisplaySettings& display) {
-  Channels shown;
-  shown.names = layer.channels == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
-  shown.values = layer.values;
+/// The layer as a screen is to show it.
+PictureLayer for_display(PictureLayer layer, const DisplaySettings& display) {
   if (layer.is_colour) {
-    display_in_place(shown.values, layer.channels, display);
+    display_in_place(layer.values, layer.channels, display);
   } else {
-    show_data_in_place(shown.values, layer.channels);
+    show_data_in_place(layer.values, layer.channels);
   }
-  return shown;
+  return layer;
+}
+
+PictureLayer spread_grey(PictureLayer layer) {
+  if (layer.channels == 3) return layer;
+  std::vector<float> grey = std::move(layer.values);
+  layer.values.clear();
+  for (const float value : grey) layer.values.insert(layer.values.end(), 3, value);
+  layer.channels = 3;
+  return layer;
+}
+
+/// The only layer of a format without layers, by the plain names of colours.
+PictureLayer alone(PictureLayer layer) {
+  layer.name.clear();
+  layer.is_colour = true;
+  return layer;
+}
+
+/// What a file of that format is to hold.
+Channels file_channels(const Format& format, const std::vector<PictureLayer>& layers, const DisplaySettings& display,
+                       size_t pixels) {
+  if (format.takes_layers) return interleaved(layers, pixels);
+  PictureLayer layer = format.is_linear ? layers.front() : for_display(layers.front(), display);
+  if (!format.takes_grey) layer = spread_grey(std::move(layer));
+  return interleaved({alone(std::move(layer))}, pixels);
 }
 
 std::vector<const char*> pointers(const std::vector<std::string>& texts) {
@@ -194,12 +217,7 @@ void write_picture(const std::string& path, int width, int height, const std::ve
     assert((layer.channels == 1 || layer.channels == 3) && layer.values.size() == pixels * size_t(layer.channels));
   }
   const Format format = format_of(path);
-  Channels channels;
-  if (format.is_linear) {
-    channels = interleaved(format.takes_layers ? layers : std::vector{layers.front()}, pixels);
-  } else {
-    channels = for_display(layers.front(), display);
-  }
+  const Channels channels = file_channels(format, layers, display, pixels);
 
   std::vector<std::string> keys, values;
   for (const auto& [key, value] : metadata) {

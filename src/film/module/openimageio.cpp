@@ -121,16 +121,17 @@ VitrumImageStatus encode_file(const VitrumImageToEncode& image, VitrumImageTake 
                        image.is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   spec.channelnames.assign(image.channel_names, image.channel_names + image.channels);
   add_metadata(image, spec);
-  if (extension == "exr") {
+  const bool is_exr = extension == "exr", is_tiff = extension == "tif" || extension == "tiff";
+  if (is_exr || is_tiff) {
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", "");  // else the time of day is written, and no two files are the same
   }
-  if (extension == "tif" || extension == "tiff") spec.attribute("compression", "zip");
   if (extension == "jpg" || extension == "jpeg") {
     spec.attribute("compression", "jpeg:95");
     spec.attribute("jpeg:subsampling", "4:4:4");
   }
-  if (image.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  // In a TIFF this would need an Exif directory, which OpenImageIO 2.4 writes in the place of the main one.
+  if (image.is_srgb && !is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
 
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
