@@ -160,33 +160,46 @@ static bool tree_closest(const Ray* ray, __global const TreeNode* nodes, __globa
   }
   bool found = false;
   ulong stack[TREE_STACK_SIZE];
-  stack[0] = tree_entry(0.0f, 0);
-  for (uint top = 1; top;) {
-    const ulong entry = stack[--top];
-    if (tree_enter(entry) > best.t) continue;
-    const uint child = (uint)entry;
+  uint top = 0, child = 0;
+  for (;;) {
     if (!(child & TREE_LEAF_BIT)) {
+      __global const TreeNode* node = nodes + child;
       float8 enter;
-      const uint mask = tree_boxes(&r, nodes + child, ray->t_min, best.t, &enter);
-      top = tree_push(stack, top, mask, enter, nodes + child);
-      continue;
+      const uint mask = tree_boxes(&r, node, ray->t_min, best.t, &enter);
+      if (mask) {
+        if (!(mask & (mask - 1))) {
+          child = node->child[tree_lowest(mask)];
+          continue;
+        }
+        top = tree_push(stack, top, mask, enter, node);
+        child = (uint)stack[--top];
+        continue;
+      }
+    } else {
+      __global const TreeLeaf* leaf = leaves + (child & ~TREE_LEAF_BIT);
+      float4 t, u, v;
+      const int4 met = tree_triangles(&r, leaf, &t, &u, &v);
+      for (uint mask = tree_mask4(met & (t > ray->t_min) & (t <= best.t)); mask; mask &= mask - 1) {
+        const uint i = tree_lowest(mask);
+        const float ts[4] = {t.x, t.y, t.z, t.w};
+        if (!tree_before(ts[i], leaf->shape[i], leaf->primitive[i], &best)) continue;
+        const float us[4] = {u.x, u.y, u.z, u.w}, vs[4] = {v.x, v.y, v.z, v.w};
+        best.t = ts[i];
+        best.shape = leaf->shape[i];
+        best.primitive = leaf->primitive[i];
+        best.u = us[i];
+        best.v = vs[i];
+        found = true;
+      }
     }
-    __global const TreeLeaf* leaf = leaves + (child & ~TREE_LEAF_BIT);
-    float4 t, u, v;
-    const int4 met = tree_triangles(&r, leaf, &t, &u, &v);
-    for (uint mask = tree_mask4(met & (t > ray->t_min) & (t <= best.t)); mask; mask &= mask - 1) {
-      const uint i = tree_lowest(mask);
-      const float ts[4] = {t.x, t.y, t.z, t.w};
-      if (!tree_before(ts[i], leaf->shape[i], leaf->primitive[i], &best)) continue;
-      const float us[4] = {u.x, u.y, u.z, u.w}, vs[4] = {v.x, v.y, v.z, v.w};
-      best.t = ts[i];
-      best.shape = leaf->shape[i];
-      best.primitive = leaf->primitive[i];
-      best.u = us[i];
-      best.v = vs[i];
-      found = true;
-    }
+    ulong entry;
+    do {
+      if (!top) goto done;
+      entry = stack[--top];
+    } while (tree_enter(entry) > best.t);
+    child = (uint)entry;
   }
+done:
   if (found) *hit = best;
   return found;
 }

@@ -230,6 +230,7 @@ Tree build_tree(std::span<const TreeTriangle> triangles, unsigned threads) {
     arguments.maxBranchingFactor = TREE_WIDTH;
     arguments.maxDepth = TREE_MAX_DEPTH;
     arguments.sahBlockSize = TREE_LEAF_WIDTH;
+    arguments.minLeafSize = TREE_LEAF_WIDTH;  // a leaf costs the same however many of its lanes are full
     arguments.maxLeafSize = TREE_LEAF_WIDTH;
     arguments.bvh = bvh.get();
     arguments.primitives = primitives.data();
