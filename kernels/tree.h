@@ -146,60 +146,74 @@ static uint tree_push(ulong* stack, const uint base, uint mask, const float8 ent
   return top;
 }
 
-static int tree_before(const float t, const uint shape, const uint primitive, const Hit* other) {
-  return t < other->t || (t == other->t && (shape < other->shape || (shape == other->shape && primitive < other->primitive)));
+// The next leaf that the ray may meet within [t_first, t_last], closest boxes first, or TREE_EMPTY. The stack holds the
+// children that wait, *top of them; a traversal starts with the root there.
+static uint tree_next_leaf(const TreeRay* r, __global const TreeNode* nodes, const float t_first, const float t_last,
+                           ulong* stack, uint* top) {
+  while (*top) {
+    const ulong entry = stack[--*top];
+    if (tree_enter(entry) > t_last) continue;
+    uint child = (uint)entry;
+    while (!(child & TREE_LEAF_BIT)) {
+      __global const TreeNode* node = nodes + child;
+      float8 enter;
+      const uint mask = tree_boxes(r, node, t_first, t_last, &enter);
+      if (!mask) {
+        child = TREE_EMPTY;
+      } else if (!(mask & (mask - 1))) {
+        child = node->child[tree_lowest(mask)];
+      } else {
+        *top = tree_push(stack, *top, mask, enter, node);
+        child = (uint)stack[--*top];
+      }
+    }
+    if (child != TREE_EMPTY) return child & ~TREE_LEAF_BIT;
+  }
+  return TREE_EMPTY;
+}
+
+static bool tree_before(const Hit* a, const Hit* b) {
+  return a->t < b->t ||
+         (a->t == b->t && (a->shape < b->shape || (a->shape == b->shape && a->primitive < b->primitive)));
+}
+
+static Hit tree_hit(__global const TreeLeaf* leaf, const uint lane, const float4 t, const float4 u, const float4 v) {
+  float lanes[3][TREE_LEAF_WIDTH];
+  vstore4(t, 0, lanes[0]);
+  vstore4(u, 0, lanes[1]);
+  vstore4(v, 0, lanes[2]);
+  Hit hit;
+  hit.t = lanes[0][lane];
+  hit.shape = leaf->shape[lane];
+  hit.primitive = leaf->primitive[lane];
+  hit.u = lanes[1][lane];
+  hit.v = lanes[2][lane];
+  return hit;
 }
 
 // Replaces *hit by the first triangle in (t_min, t_max) if that comes before it. True if it does.
 static bool tree_closest(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves, Hit* hit) {
   const TreeRay r = tree_ray(ray);
   Hit best = *hit;
-  if (!(hit->t < ray->t_max)) {
+  if (!(best.t < ray->t_max)) {
     best.t = ray->t_max;
     best.shape = best.primitive = 0;  // nothing at t_max comes before this
   }
   bool found = false;
   ulong stack[TREE_STACK_SIZE];
-  uint top = 0, child = 0;
-  for (;;) {
-    if (!(child & TREE_LEAF_BIT)) {
-      __global const TreeNode* node = nodes + child;
-      float8 enter;
-      const uint mask = tree_boxes(&r, node, ray->t_min, best.t, &enter);
-      if (mask) {
-        if (!(mask & (mask - 1))) {
-          child = node->child[tree_lowest(mask)];
-          continue;
-        }
-        top = tree_push(stack, top, mask, enter, node);
-        child = (uint)stack[--top];
-        continue;
-      }
-    } else {
-      __global const TreeLeaf* leaf = leaves + (child & ~TREE_LEAF_BIT);
-      float4 t, u, v;
-      const int4 met = tree_triangles(&r, leaf, &t, &u, &v);
-      for (uint mask = tree_mask4(met & (t > ray->t_min) & (t <= best.t)); mask; mask &= mask - 1) {
-        const uint i = tree_lowest(mask);
-        const float ts[4] = {t.x, t.y, t.z, t.w};
-        if (!tree_before(ts[i], leaf->shape[i], leaf->primitive[i], &best)) continue;
-        const float us[4] = {u.x, u.y, u.z, u.w}, vs[4] = {v.x, v.y, v.z, v.w};
-        best.t = ts[i];
-        best.shape = leaf->shape[i];
-        best.primitive = leaf->primitive[i];
-        best.u = us[i];
-        best.v = vs[i];
-        found = true;
-      }
+  stack[0] = tree_entry(0.0f, 0);
+  uint top = 1, next;
+  while ((next = tree_next_leaf(&r, nodes, ray->t_min, best.t, stack, &top)) != TREE_EMPTY) {
+    __global const TreeLeaf* leaf = leaves + next;
+    float4 t, u, v;
+    const int4 met = tree_triangles(&r, leaf, &t, &u, &v);
+    for (uint mask = tree_mask4(met & (t > ray->t_min) & (t <= best.t)); mask; mask &= mask - 1) {
+      const Hit candidate = tree_hit(leaf, tree_lowest(mask), t, u, v);
+      if (!tree_before(&candidate, &best)) continue;
+      best = candidate;
+      found = true;
     }
-    ulong entry;
-    do {
-      if (!top) goto done;
-      entry = stack[--top];
-    } while (tree_enter(entry) > best.t);
-    child = (uint)entry;
   }
-done:
   if (found) *hit = best;
   return found;
 }
@@ -209,19 +223,42 @@ static bool tree_any(const Ray* ray, __global const TreeNode* nodes, __global co
   const TreeRay r = tree_ray(ray);
   ulong stack[TREE_STACK_SIZE];
   stack[0] = tree_entry(0.0f, 0);
-  for (uint top = 1; top;) {
-    const uint child = (uint)stack[--top];
+  uint top = 1, next;
+  while ((next = tree_next_leaf(&r, nodes, ray->t_min, ray->t_max, stack, &top)) != TREE_EMPTY) {
     float4 t, u, v;
-    float8 enter;
-    if (!(child & TREE_LEAF_BIT)) {
-      const uint mask = tree_boxes(&r, nodes + child, ray->t_min, ray->t_max, &enter);
-      top = tree_push(stack, top, mask, enter, nodes + child);
-    } else {
-      const int4 met = tree_triangles(&r, leaves + (child & ~TREE_LEAF_BIT), &t, &u, &v);
-      if (tree_mask4(met & (t > ray->t_min) & (t < ray->t_max))) return true;
-    }
+    const int4 met = tree_triangles(&r, leaves + next, &t, &u, &v);
+    if (tree_mask4(met & (t > ray->t_min) & (t < ray->t_max))) return true;
   }
   return false;
+}
+
+#define TREE_MAX_HITS 4
+
+// The first TREE_MAX_HITS triangles at t_first <= t <= t_last, t_first >= 0, in order; returns how many there are in
+// `hits`. For surfaces in contact; the ray's own t_min and t_max do not matter.
+static uint tree_hits_within(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
+                             const float t_first, const float t_last, Hit hits[TREE_MAX_HITS]) {
+  const TreeRay r = tree_ray(ray);
+  uint count = 0;
+  float t_end = t_last;
+  ulong stack[TREE_STACK_SIZE];
+  stack[0] = tree_entry(0.0f, 0);
+  uint top = 1, next;
+  while ((next = tree_next_leaf(&r, nodes, t_first, t_end, stack, &top)) != TREE_EMPTY) {
+    __global const TreeLeaf* leaf = leaves + next;
+    float4 t, u, v;
+    const int4 met = tree_triangles(&r, leaf, &t, &u, &v);
+    for (uint mask = tree_mask4(met & (t >= t_first) & (t <= t_end)); mask; mask &= mask - 1) {
+      const Hit candidate = tree_hit(leaf, tree_lowest(mask), t, u, v);
+      uint place = count;
+      for (; place > 0 && tree_before(&candidate, &hits[place - 1]); --place)
+        if (place < TREE_MAX_HITS) hits[place] = hits[place - 1];
+      if (place < TREE_MAX_HITS) hits[place] = candidate;
+      count += count < TREE_MAX_HITS;
+    }
+    if (count == TREE_MAX_HITS) t_end = hits[TREE_MAX_HITS - 1].t;
+  }
+  return count;
 }
 
 #endif
