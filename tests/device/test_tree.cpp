@@ -101,6 +101,7 @@ __kernel void improve(__global const TreeNode* nodes, __global const TreeLeaf* l
   Hit hit = hits[i];
   found[i] = tree_closest(&ray, nodes, leaves, &hit);
   hits[i] = hit;
+  found[i] |= tree_any(&ray, nodes, leaves) ? 2 : 0;
 }
 )";
 
@@ -335,6 +336,29 @@ TEST_CASE("no ray leaves a closed mesh through its edges and corners") {
     }
 }
 
+TEST_CASE("rays from far away lose nothing at the boxes, however coarse their own numbers are") {
+  Random random(11);
+  for (const float away : {1e2f, 1e4f, 1e6f}) {
+    CAPTURE(away);
+    auto triangles = soup(1000, 0.1f, 0.1f, 1, vec3(0), 12);
+    for (size_t i = 0; i < triangles.size(); i += 2) {  // half of them in a plane across an axis
+      const int axis = static_cast<int>(i / 2 % 3);
+      triangles[i].b[axis] = triangles[i].c[axis] = triangles[i].a[axis];
+    }
+    std::vector<RayData> rays;
+    for (int i = 0; i < 8192; ++i) {
+      const TreeTriangle& t = triangles[random.below(triangles.size())];
+      vec3 origin = away * random.direction();
+      if (i % 2) {  // along an axis, all but
+        origin = t.b;
+        origin[i % 3] = i % 4 == 1 ? away : -away;
+      }
+      rays.push_back({origin, glm::normalize((i % 8 < 4 ? t.a : t.b) - origin), 0, INFINITY});
+    }
+    check_against_leaves(trace(triangles, rays));
+  }
+}
+
 TEST_CASE("equal distances go to the lowest shape, then the lowest primitive") {
   // Three copies of a fan whose triangles share the corner and the edges that the rays are sent to, in mixed order.
   std::vector<TreeTriangle> triangles;
@@ -383,13 +407,17 @@ TEST_CASE("a hit that is there already is only replaced by one that comes before
   const Tree tree = build_tree(std::vector<TreeTriangle>{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, 6}});  // at t = 1
   struct Case {
     HitData held;                           ///< u is the ray's t_max
-    bool replaced;
+    bool replaced, any;
   };
-  const Case cases[] = {{{2, 1, 0, INFINITY, 0}, true},      {{0.5f, 8, 0, INFINITY, 0}, false},
-                        {{1, 4, 6, INFINITY, 0}, false},     {{1, 4, 7, INFINITY, 0}, true},
-                        {{1, 5, 0, INFINITY, 0}, true},      {{1, 3, 9, INFINITY, 0}, false},
-                        {{INFINITY, ~0u, ~0u, 1, 0}, false}, {{1, ~0u, 0, 1, 0}, false},
-                        {{INFINITY, ~0u, ~0u, 1.01f, 0}, true}};
+  const Case cases[] = {{{2, 1, 0, INFINITY, 0}, true, true},
+                        {{0.5f, 8, 0, INFINITY, 0}, false, true},
+                        {{1, 4, 6, INFINITY, 0}, false, true},
+                        {{1, 4, 7, INFINITY, 0}, true, true},
+                        {{1, 5, 0, INFINITY, 0}, true, true},
+                        {{1, 3, 9, INFINITY, 0}, false, true},
+                        {{INFINITY, ~0u, ~0u, 1, 0}, false, false},
+                        {{1, ~0u, 0, 1, 0}, false, false},
+                        {{INFINITY, ~0u, ~0u, 1.01f, 0}, true, true}};
   std::vector<HitData> held(64);
   for (size_t i = 0; i < std::size(cases); ++i) held[i] = cases[i].held;
   const cl::Buffer hits = device.cl.upload(held), found = device.cl.upload(std::vector<uint32_t>(64));
@@ -399,7 +427,8 @@ TEST_CASE("a hit that is there already is only replaced by one that comes before
   const auto replaced = device.cl.download<uint32_t>(found, 64);
   for (size_t i = 0; i < std::size(cases); ++i) {
     CAPTURE(i);
-    CHECK((replaced[i] != 0) == cases[i].replaced);
+    CHECK((replaced[i] & 1) == cases[i].replaced);
+    CHECK((replaced[i] >> 1) == cases[i].any);
     if (cases[i].replaced)
       CHECK(after[i] == HitData{1, 4, 6, 0.25f, 0.25f});
     else
