@@ -1,0 +1,57 @@
+#pragma once
+// Just enough OpenCL for the tests and tools of the tree: the first device, programs from text, buffers from vectors.
+
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#define CL_HPP_ENABLE_EXCEPTIONS
+#include <CL/opencl.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace vitrum {
+
+class OpenClHarness {
+ public:
+  OpenClHarness() : context_(CL_DEVICE_TYPE_ALL), queue_(context_) {}
+
+  cl::Program build(const std::string& source, const std::string& options = "") const {
+    cl::Program program(context_, source);
+    try {
+      program.build(("-cl-std=CL1.2 -I " VITRUM_SOURCE_DIR "/kernels " + options).c_str());
+    } catch (const cl::BuildError& error) {
+      throw std::runtime_error(error.getBuildLog().front().second);
+    }
+    return program;
+  }
+
+  template <typename T>
+  cl::Buffer upload(const std::vector<T>& data) const {
+    if (data.empty()) return cl::Buffer(context_, CL_MEM_READ_WRITE, sizeof(T));
+    return cl::Buffer(context_, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, data.size() * sizeof(T),
+                      const_cast<T*>(data.data()));
+  }
+
+  template <typename T>
+  std::vector<T> download(const cl::Buffer& buffer, size_t count) const {
+    std::vector<T> data(count);
+    queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, count * sizeof(T), data.data());
+    return data;
+  }
+
+  /// Runs `count` work-items, a multiple of 64, and waits for them.
+  template <typename... Arguments>
+  void run(const cl::Program& program, const char* kernel_name, size_t count, const Arguments&... arguments) const {
+    cl::Kernel kernel(program, kernel_name);
+    cl_uint index = 0;
+    (kernel.setArg(index++, arguments), ...);
+    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(count), cl::NDRange(64));
+    queue_.finish();
+  }
+
+ private:
+  cl::Context context_;
+  cl::CommandQueue queue_;
+};
+
+}  // namespace vitrum
