@@ -89,7 +89,8 @@ void apply_override(toml::table& root, const std::string& override_text) {
       node.visit([&](auto& concrete) { into->insert_or_assign(name, std::move(concrete)); });
       return;
     }
-    path += (path.empty() ? "" : ".") + std::string(name.str());
+    if (part > 1) path += '.';
+    path += name.str();
     if (!present->is_table())
       throw Error(where, "'" + path + "' is a value, which holds no further keys", "set " + path + " as a whole");
     into = present->as_table();

@@ -83,8 +83,11 @@ std::vector<ShapeDeclaration> read_shapes(const TomlTable& root, const FileConte
                                              {"plane", ShapeType::plane},
                                              {"triangle", ShapeType::triangle},
                                              {"mesh", ShapeType::mesh}});
-    ShapeDeclaration shape{.name = name, .where = table.where(), .material_where = table.where("material"),
-                           .transform = Transform(table, context.metres_per_unit)};
+    ShapeDeclaration shape;
+    shape.name = name;
+    shape.where = table.where();
+    shape.material_where = table.where("material");
+    shape.transform = Transform(table, context.metres_per_unit);
     switch (type) {
       case ShapeType::sphere: shape.geometry = read_sphere(table, shape.transform); break;
       case ShapeType::plane: shape.geometry = read_plane(table, shape.transform); break;

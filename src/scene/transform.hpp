@@ -11,6 +11,7 @@ namespace vitrum {
 /// An affine map from a shape's own space, in the scene file's units, to world space in metres.
 class Transform {
  public:
+  Transform() = default;
   /// The key `transform` of `shape`, or the identity, followed by the change from units to metres.
   Transform(const TomlTable& shape, double metres_per_unit);
 
