@@ -7,7 +7,6 @@ namespace {
 
 constexpr Range fraction{0, 1};
 constexpr Range not_negative{0, 1e9};
-constexpr double smallest_distance = 1e-9;
 
 /// `map_Kd`: a file's name, or a table with MTL's options.
 TextureReference read_texture_reference(const TomlTable& table, const FileContext& context) {
@@ -34,6 +33,7 @@ MtlMaterial read_material(const std::string& name, TomlTable table, const FileCo
                         "texture_colour_space"});
   table.exclude_each_other({"illum", "shader"});
   table.exclude_each_other({"absorption", "absorption_colour"});
+  table.exclude_each_other({"absorption", "absorption_distance"});
 
   MtlMaterial material;
   material.name = name;
@@ -68,7 +68,7 @@ MtlMaterial read_material(const std::string& name, TomlTable table, const FileCo
   colour("absorption", material.absorption, {0, 1e12});
   if (material.absorption) material.absorption->value /= context.metres_per_unit;
   colour("absorption_colour", material.absorption_colour, fraction);
-  number("absorption_distance", material.absorption_distance, {smallest_distance, length_limit});
+  number("absorption_distance", material.absorption_distance, positive_length);
   if (material.absorption_distance) material.absorption_distance->value *= context.metres_per_unit;
   integer("priority", material.priority, -1000, 1000);
   table.said("texture_filter", material.texture_filter, [&](TextureFilter& v) {

@@ -23,8 +23,10 @@ RenderSettings read_render_settings(const TomlTable& table) {
     table.number("reflectance", constant, {0, 1});
     settings.constant_reflectance = constant;
   } else {
-    enum class Model { fresnel } model;
-    table.choice("reflectance", model, {{"fresnel", Model::fresnel}});
+    std::string model = "fresnel";
+    table.text("reflectance", model);
+    if (model != "fresnel")
+      table.fail("reflectance", "is '" + model + "'", "give \"fresnel\" or a number from 0 to 1, as in 0.1");
   }
   table.flag("caustics", settings.caustics);
   table.flag("lights", settings.lights);
