@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "film/display.hpp"
 
 namespace vitrum {
 
@@ -16,19 +17,15 @@ struct Picture {
   std::vector<glm::vec3> pixels;            ///< width * height; grey is spread over the three channels
 };
 
-/// A named plane of a picture that is to be written. EXR takes several as layers; others take the first.
+/// A named plane of a picture that is to be written. EXR takes several as layers, which viewers know by the names of
+/// their channels: R, G, B for the beauty, "albedo.R" and so on for other colours, "normal.X" and so on for what is no
+/// colour, "depth.Z" for the depth. Other formats take the first layer.
 struct PictureLayer {
   std::string name;                         ///< "beauty", "normal", ... ; "" or "beauty" become the plain R, G, B
   int channels = 3;                         ///< 1 or 3
   std::vector<float> values;                ///< width * height * channels, linear
-  bool is_colour = true;                    ///< takes the display transform in PNG and the like
-};
-
-/// How linear radiance becomes the values of a PNG: value = transform(radiance * 2^exposure).
-struct DisplaySettings {
-  bool srgb = true;                         ///< false: power 1 / gamma
-  double gamma = 1.8;
-  double exposure = 0.0;                    ///< stops
+  bool is_colour = true;                    ///< takes the display transform in PNG and the like; what is no colour is
+                                            ///< made visible there by show_data_in_place (display.hpp)
 };
 
 /// Reads a picture; values are as in the file (0..1 for integer formats), without any colour transform.
@@ -36,12 +33,13 @@ struct DisplaySettings {
 Picture read_picture(const std::string& path, const SourceLocation& asked_by);
 
 /// Checks that a picture can be written to `path`: a known extension, a folder that exists and can be written.
-/// Throws Error; called before rendering begins. Does not open the module.
+/// Throws Error; called before rendering begins. Does not open the module, nor touch the file.
 void check_writable(const std::string& path);
 
-/// Writes layers to `path`, whole or not at all (a temporary file beside it, then a rename).
-/// .exr: float, linear, all layers. Others (.png, .jpg, .tif, .bmp, .hdr ...): the first layer; integer formats with
-/// the display transform. `metadata` goes into the file's header where the format has room. Throws Error.
+/// Writes layers to `path`, whole or not at all (core/whole_file.hpp). The same input gives the same bytes.
+/// .exr: 32-bit float, linear, all layers. .hdr: linear, first layer. .png, .jpg, .tif, .bmp: 8-bit, first layer, with
+/// the display transform. `metadata` goes into the file's header where the format has room, with the version of vitrum:
+/// in EXR and PNG as "vitrum:KEY", in JPEG and TIFF within the description. Throws Error at {path}.
 void write_picture(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
                    const DisplaySettings& display, const std::map<std::string, std::string>& metadata);
 

@@ -1,0 +1,64 @@
+#pragma once
+// The film: what all passes have given so far, as sums in named planes, kept apart by replicate.
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vitrum {
+
+/// One quantity over the picture, in one replicate: sums over samples, in double, and how many samples they hold.
+/// The mean is sums / samples.
+struct Plane {
+  std::string name;              ///< "radiance", "caustics", "normal", ...
+  int channels = 3;
+  double samples = 0;            ///< weight of what `sums` holds; the same for every pixel
+  std::vector<double> sums;      ///< width * height * channels, interleaved, row 0 at the top
+};
+
+/// A film of a fixed size. Pass p belongs to replicate p mod replicates: the replicates are independent estimates of
+/// the same picture, so that their scatter tells its variance.
+class Film {
+ public:
+  static constexpr int max_replicates = 8;
+
+  /// A black film. `width`, `height` >= 1 [pixels], `replicates` in 1..max_replicates.
+  Film(int width, int height, int replicates = max_replicates);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int replicates() const { return static_cast<int>(planes_.size()); }
+
+  /// Adds what pass `pass` gave to the plane `name`, which is made if it is new: `values` are sums over `samples`
+  /// samples (> 0), width * height * channels of them. A plane has the same channels in all passes.
+  void add(uint64_t pass, const std::string& name, int channels, std::span<const float> values, double samples);
+
+  /// Names of all planes that any pass has added to, in the order of the alphabet.
+  std::vector<std::string> names() const;
+
+  /// The plane of one replicate; nullptr if no pass of it has added to the plane.
+  const Plane* plane(const std::string& name, int replicate) const;
+
+  /// Mean over all samples of all replicates; empty if there is no such plane.
+  std::vector<double> mean(const std::string& name) const;
+
+  /// Estimated variance of `mean`, by value, from the scatter of the replicates' means m_r with their samples n_r:
+  /// sum n_r (m_r - mean)^2 / ((R - 1) sum n_r) over the R replicates with samples; unbiased where the variance of m_r
+  /// goes as 1 / n_r. Empty if R < 2.
+  std::vector<double> variance_of_mean(const std::string& name) const;
+
+  /// Adds another film of the same size and number of replicates, replicate by replicate. It must hold other passes.
+  /// Throws Error if size, replicates or the channels of a plane differ; then this film is as it was.
+  void merge(const Film& other);
+
+ private:
+  std::size_t values_of(int channels) const;
+
+  int width_, height_;
+  std::vector<std::map<std::string, Plane>> planes_;  ///< by replicate and name
+};
+
+}  // namespace vitrum
