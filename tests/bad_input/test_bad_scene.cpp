@@ -88,8 +88,8 @@ TEST_CASE("nesting that would exhaust the stack") {
       {"vitrum = 1\nx = " + brackets, 2, {"nested deeper"}},
       {"vitrum = 1\n" + mixed, 2, {"nested deeper"}},
       // Quotes at the end of a long string belong to it and open none.
-      {"vitrum = 1\ny = \"\"\"\nshe said \"no\"\"\"\"\n" + dots + "a = 1\n", 4, {"nested deeper"}},
-      {"vitrum = 1\ny = '''it's''''\n" + dots + "a = 1\n", 3, {"nested deeper"}},
+      {"vitrum = 1\ny = { z = \"\"\"\nshe said \"no\"\"\"\", " + dots + "a = 1 }\n", 3, {"nested deeper"}},
+      {"vitrum = 1\ny = { z = '''it's''''', " + dots + "a = 1 }\n", 2, {"nested deeper"}},
       {"vitrum = 1\ny = \"a\\\\\" # \"\n" + dots + "a = 1\n", 3, {"nested deeper"}},
   });
 }

@@ -131,6 +131,19 @@ TEST_CASE("glass whose bottom lies in the table's plane") {
   CHECK(media_at(scene, {0, -0.01, 0}).empty());
 }
 
+TEST_CASE("a sheet of glass in the plane of an opaque floor is seen") {
+  Scene scene;
+  const uint32_t glass = add_material(scene, Surface::dielectric), stone = add_material(scene, Surface::opaque);
+  Mesh room;
+  const float floor = 0.1f;
+  add_box(room, stone, {-1, floor, -1}, {1, 2, 1});
+  add_face(room, glass, {-1, floor, -1}, {1, floor, -1}, {1, floor, 1}, {-1, floor, 1});  // its back looks into the room
+  // Turned about x by an angle without meaning, so that the two distances round differently.
+  for (glm::vec3& p : room.positions) p = {p.x, 0.8f * p.y - 0.6f * p.z, 0.6f * p.y + 0.8f * p.z};
+  add_shape(scene, none, room);
+  CHECK(media_at(scene, {0, 0.8, 0.6}) == Indices{glass});
+}
+
 TEST_CASE("nested shapes come by priority, then in order") {
   Scene scene;
   const uint32_t water = add_material(scene, Surface::dielectric, 1), glass = add_material(scene, Surface::dielectric, 3);
