@@ -1,0 +1,57 @@
+// [render] and [photons].
+
+#include "scene/sections.hpp"
+
+namespace vitrum {
+namespace {
+
+const std::vector<std::pair<std::string, Sampling>> samplings{{"low-discrepancy", Sampling::low_discrepancy},
+                                                              {"independent", Sampling::independent}};
+constexpr int deepest_path = 1000;
+
+}  // namespace
+
+RenderSettings read_render_settings(const TomlTable& table) {
+  table.check_keys({}, {"samples", "passes", "seed", "reflectance", "caustics", "lights", "textures", "max_depth",
+                        "min_weight", "sampling"});
+  RenderSettings settings;
+  table.integer("samples", settings.samples, 1, 1 << 24);
+  table.integer("passes", settings.passes, 1, 1 << 24);
+  table.integer("seed", settings.seed, 0, std::numeric_limits<int64_t>::max());
+  if (table.is_number("reflectance")) {
+    double constant = 0;
+    table.number("reflectance", constant, {0, 1});
+    settings.constant_reflectance = constant;
+  } else {
+    std::string model = "fresnel";
+    table.text("reflectance", model);
+    if (model != "fresnel")
+      table.fail("reflectance", "is '" + model + "'", "give \"fresnel\" or a number from 0 to 1, as in 0.1");
+  }
+  table.flag("caustics", settings.caustics);
+  table.flag("lights", settings.lights);
+  table.flag("textures", settings.textures);
+  table.integer("max_depth", settings.max_depth, 1, deepest_path);
+  table.number("min_weight", settings.min_weight, {0, 1});
+  table.choice("sampling", settings.sampling, samplings);
+  return settings;
+}
+
+PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& context) {
+  table.check_keys({}, {"count", "sampling", "estimate", "radius", "nearest", "max_radius", "max_depth"});
+  constexpr uint64_t most_photons = 1'000'000'000'000;
+  PhotonSettings settings;
+  table.integer("count", settings.count, 1, most_photons);
+  table.choice("sampling", settings.sampling, samplings);
+  table.choice("estimate", settings.estimate,
+               {{"automatic", PhotonEstimate::automatic},
+                {"radius", PhotonEstimate::fixed_radius},
+                {"nearest", PhotonEstimate::nearest}});
+  table.length("radius", settings.radius, positive_length, context.metres_per_unit);
+  table.integer("nearest", settings.nearest, 1, 1 << 20);
+  table.length("max_radius", settings.max_radius, positive_length, context.metres_per_unit);
+  table.integer("max_depth", settings.max_depth, 1, deepest_path);
+  return settings;
+}
+
+}  // namespace vitrum
