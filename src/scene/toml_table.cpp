@@ -150,7 +150,9 @@ void TomlTable::flag(std::string_view key, bool& value) const {
 double TomlTable::checked_number(std::string_view key, const toml::node& node, Range range,
                                  const std::string& wanted) const {
   if (!node.is_number()) wrong_type(key, node, wanted);
-  const double number = *node.value<double>();
+  // Not value<double>(): that has none for integers beyond 2^53.
+  const double number =
+      node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!std::isfinite(number))
     throw Error(location(node.source()), path_of(key) + " is not finite", "write a number");
   if (number < range.low || number > range.high || (range.excludes_low && number == range.low))
