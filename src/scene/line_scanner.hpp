@@ -35,9 +35,11 @@ class LineScanner {
   /// Next word of the line, empty at its end.
   std::string_view next_word() {
     skip_space();
-    const char* begin = cursor_;
-    while (cursor_ != end_ && !is_delimiter(*cursor_)) ++cursor_;
-    return {begin, static_cast<size_t>(cursor_ - begin)};
+    const char* const begin = cursor_;
+    const char* c = begin;
+    while (c != end_ && !is_delimiter(*c)) ++c;
+    cursor_ = c;
+    return {begin, static_cast<size_t>(c - begin)};
   }
 
   /// The word that next_word would give.
@@ -85,7 +87,9 @@ class LineScanner {
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   static bool is_delimiter(char c) { return is_space(c) || c == '#'; }
   void skip_space() {
-    while (cursor_ != end_ && is_space(*cursor_)) ++cursor_;
+    const char* c = cursor_;
+    while (c != end_ && is_space(*c)) ++c;
+    cursor_ = c;
   }
   bool fetch_line();
   bool continues(size_t begin, size_t line_break);
