@@ -58,7 +58,7 @@ TEST_CASE("the variance of the mean is unbiased, also with unequal replicates") 
   double mean_variance = 0;
   for (const double variance : film.variance_of_mean("x")) mean_variance += variance / pixels;
   // The estimate of one pixel scatters by about sqrt(2 / 7), so that of 20000 by .4 %; 5 sigma.
-  CHECK(mean_variance == doctest::Approx(1.0 / 12 / samples).epsilon(0.02));
+  CHECK(std::abs(mean_variance * 12 * samples - 1) < 0.02);
 }
 
 TEST_CASE("two films merged are the film of all passes") {
