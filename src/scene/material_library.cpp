@@ -63,7 +63,8 @@ uint32_t MaterialLibrary::use(const std::string& name, const SourceLocation& ask
 }
 
 uint32_t MaterialLibrary::load_texture(Texture texture) {
-  const auto same = std::find_if(textures_.begin(), textures_.end(), [&](const Texture& t) { return same_lookup(t, texture); });
+  const auto same = std::find_if(textures_.begin(), textures_.end(),
+                                 [&](const Texture& t) { return same_lookup(t, texture); });
   if (same != textures_.end()) return static_cast<uint32_t>(same - textures_.begin());
 
   const auto same_texels = std::find_if(textures_.begin(), textures_.end(), [&](const Texture& t) {

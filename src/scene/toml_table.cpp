@@ -113,14 +113,16 @@ void TomlTable::check_keys(const std::vector<std::string>& required, const std::
 
   for (const std::string& key : required)
     if (!has(key))
-      throw Error(where_, path_of(key) + " is missing", "give it" + (path_.empty() ? " at the top" : " in [" + path_ + ']'));
+      throw Error(where_, path_of(key) + " is missing",
+                  path_.empty() ? "give it at the top" : "give it in [" + path_ + ']');
 }
 
 void TomlTable::require_type() const {
   if (has("type")) return;
   for (const auto& [key, node] : *table_)
     if (edit_distance(key.str(), "type") <= 2)
-      throw Error(location(key.source()), path_of(key.str()) + " is not a key of [" + path_ + ']', "did you mean 'type'?");
+      throw Error(location(key.source()), path_of(key.str()) + " is not a key of [" + path_ + ']',
+                  "did you mean 'type'?");
   throw Error(where_, path_of("type") + " is missing", "give it in [" + path_ + ']');
 }
 

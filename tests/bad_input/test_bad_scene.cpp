@@ -155,7 +155,7 @@ TEST_CASE("camera, film and background") {
       {"vitrum = 1\n[camera]\neye = [0, 0,\n\"x\"]\nlook_at = [0, 0, 0]\n", 4, {"camera.eye wants", "the text 'x'"}},
       {"vitrum = 1\n[camera]\neye = [0, 0, nan]\nlook_at = [0, 0, 0]\n", 3, {"not finite"}},
       {"vitrum = 1\n[camera]\neye = [0, 0, 1e10]\nlook_at = [0, 0, 0]\n", 3, {"out of range"}},
-      {"vitrum = 1\n[camera]\neye = [0, 0, 9223372036854775807]\nlook_at = [0, 0, 0]\n", 3, {"out of range: 9.22"}},
+      {"vitrum = 1\n[camera]\neye = [0, 0, 9223372036854775807]\nlook_at = [0, 0, 0]\n", 3, {"out of range: 9223372036854775808"}},
       {"vitrum = 1\n[camera]\neye = [1, 1, 1]\nlook_at = [1, 1, 1]\n", 4, {"where the eye is"}},
       {"vitrum = 1\n[camera]\neye = [0, 5, 0]\nlook_at = [0, 0, 0]\nup = [0, 2, 0]\n", 5, {"parallel to the view"}},
       {"vitrum = 1\n[camera]\neye = [0, 5, 0]\nlook_at = [0, 0, 0]\n", 2, {"camera.up is parallel to the view"}},
