@@ -75,7 +75,8 @@ struct Format {
 /// The format that the name asks for. Throws Error at {path}.
 Format format_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
   static const std::array<Format, 8> formats{{{"exr", true, true, true},
                                               {"hdr", true, false, false},
                                               {"png", false, false, true},

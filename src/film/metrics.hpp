@@ -16,7 +16,7 @@ struct PictureError {
   double rmse = 0.0;           ///< square root of mse
   double relative_mse = 0.0;   ///< mean of (v - t)^2 / (t^2 + epsilon)
   double maximum = 0.0;        ///< largest |v - t| of any channel
-  int maximum_x = 0, maximum_y = 0;  ///< the first pixel that has it, from the top left; (0, 0) if there is no difference
+  int maximum_x = 0, maximum_y = 0;  ///< the first pixel that has it, from the top left
   uint64_t not_finite = 0;     ///< values that differ while one of the two is NaN or infinite
 };
 

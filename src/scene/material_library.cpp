@@ -63,7 +63,8 @@ uint32_t MaterialLibrary::use(const std::string& name, const SourceLocation& ask
 }
 
 uint32_t MaterialLibrary::load_texture(Texture texture) {
-  const auto same = std::find_if(textures_.begin(), textures_.end(), [&](const Texture& t) { return same_lookup(t, texture); });
+  const auto same = std::find_if(textures_.begin(), textures_.end(),
+                                 [&](const Texture& t) { return same_lookup(t, texture); });
   if (same != textures_.end()) return static_cast<uint32_t>(same - textures_.begin());
 
   const auto same_texels = std::find_if(textures_.begin(), textures_.end(), [&](const Texture& t) {
@@ -101,7 +102,7 @@ void MaterialLibrary::check_tables() const {
     if (names_in_files_.contains(name) || std::any_of(used_.begin(), used_.end(), is_this)) continue;
     std::set<std::string> known = names_in_files_;
     for (const auto& [other, other_table] : tables_)
-      if (!is_override(other_table.where)) known.insert(other);
+      if (other != name && !is_override(other_table.where)) known.insert(other);
     const std::string mend = suggestion(name, {known.begin(), known.end()}, "materials");
     if (is_override(table.where)) throw Error(table.where, "no shape has a material '" + name + "'", mend);
     warn(table.where, "no shape uses material '" + name + "'; " + mend);

@@ -24,8 +24,8 @@ class MaterialLibrary {
   /// `tables`: the scene file's [material.NAME], which lie over whatever an MTL file says under that name.
   MaterialLibrary(Options options, std::vector<MtlMaterial> files, std::map<std::string, MtlMaterial> tables);
 
-  /// Index of material `name` in materials(). It is looked for in `own`, the library of an OBJ file, then in the scene's
-  /// files. Throws Error at `asked_by` for a name that is in none of them nor a [material.NAME].
+  /// Index of material `name` in materials(). It is looked for in `own`, the library of an OBJ file, then in the
+  /// scene's files. Throws Error at `asked_by` for a name that is in none of them nor a [material.NAME].
   uint32_t use(const std::string& name, const SourceLocation& asked_by, const std::vector<MtlMaterial>& own = {});
 
   /// Tells the library of names that exist in an OBJ's MTL files, for suggestions and check_tables.

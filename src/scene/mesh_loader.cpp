@@ -47,7 +47,8 @@ void look_up_materials(Mesh& mesh, const ObjFile& obj, const ShapeDeclaration& s
 }
 
 /// Warns of faces that want a texture and have no coordinates for it.
-void check_texture_coordinates(const Mesh& mesh, const ShapeDeclaration& shape, const std::vector<Material>& materials) {
+void check_texture_coordinates(const Mesh& mesh, const ShapeDeclaration& shape,
+                               const std::vector<Material>& materials) {
   for (size_t face = 0; face < mesh.triangles.size(); ++face) {
     const Material& material = materials[mesh.materials[face]];
     const bool has_coordinates = !mesh.texcoord_indices.empty() && mesh.texcoord_indices[face].x != none;

@@ -24,7 +24,8 @@ void check_top(const TomlTable& root) {
   root.integer("vitrum", version, 1, std::numeric_limits<int>::max());
   if (version != schema_version)
     root.fail("vitrum", "is " + std::to_string(version) + ", but this vitrum reads version " +
-                            std::to_string(schema_version) + " of the format", "use a newer vitrum, or write vitrum = 1");
+                            std::to_string(schema_version) + " of the format",
+              "use a newer vitrum, or write vitrum = 1");
   root.check_keys({"vitrum", "camera"}, {"unit", "mtl", "materials", "film", "background", "light", "shape", "material",
                                          "render", "photons"});
 }

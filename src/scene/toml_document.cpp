@@ -86,7 +86,7 @@ void check_depth(std::string_view text, const std::string& source) {
 
 /// What to do about a parse error, as far as toml++'s words tell.
 std::string mend_for(std::string_view problem) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 10> mends{{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 11> mends{{
       {"utf-8", "save the file as UTF-8"},
       {"floating-point", "TOML wants digits on both sides of the point: 0.6 and 1.0, not .6 and 1."},
       {"saw ','", "TOML's numbers have a point: 0.5, not 0,5"},
@@ -95,6 +95,7 @@ std::string mend_for(std::string_view problem) {
       {"boolean", "write true or false, in small letters; text goes between quotes"},
       {"64 bits", "write a smaller number"},
       {"could not be interpreted", "write a smaller number; text goes between quotes"},
+      {"parsing key:", "names hold letters, digits, _ and -; others go between quotes"},
       {"table header", "a table begins with a line [NAME]"},
       {"array", "write an array as [1, 2, 3]"},
   }};

@@ -113,14 +113,16 @@ void TomlTable::check_keys(const std::vector<std::string>& required, const std::
 
   for (const std::string& key : required)
     if (!has(key))
-      throw Error(where_, path_of(key) + " is missing", "give it" + (path_.empty() ? " at the top" : " in [" + path_ + ']'));
+      throw Error(where_, path_of(key) + " is missing",
+                  path_.empty() ? "give it at the top" : "give it in [" + path_ + ']');
 }
 
 void TomlTable::require_type() const {
   if (has("type")) return;
   for (const auto& [key, node] : *table_)
     if (edit_distance(key.str(), "type") <= 2)
-      throw Error(location(key.source()), path_of(key.str()) + " is not a key of [" + path_ + ']', "did you mean 'type'?");
+      throw Error(location(key.source()), path_of(key.str()) + " is not a key of [" + path_ + ']',
+                  "did you mean 'type'?");
   throw Error(where_, path_of("type") + " is missing", "give it in [" + path_ + ']');
 }
 
@@ -150,7 +152,9 @@ void TomlTable::flag(std::string_view key, bool& value) const {
 double TomlTable::checked_number(std::string_view key, const toml::node& node, Range range,
                                  const std::string& wanted) const {
   if (!node.is_number()) wrong_type(key, node, wanted);
-  const double number = *node.value<double>();
+  // Not value<double>(): that has none for integers beyond 2^53.
+  const double number =
+      node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!std::isfinite(number))
     throw Error(location(node.source()), path_of(key) + " is not finite", "write a number");
   if (number < range.low || number > range.high || (range.excludes_low && number == range.low))

@@ -85,7 +85,8 @@ Transform::Transform(const TomlTable& shape, double metres_per_unit)
   const double determinant = glm::determinant(linear_);
   const double lengths = glm::length(linear_[0]) * glm::length(linear_[1]) * glm::length(linear_[2]);
   if (!(std::abs(determinant) > 1e-12 * lengths))
-    throw Error(where_, name_ + ".transform flattens the shape: its determinant is 0", "give a matrix that has an inverse");
+    throw Error(where_, name_ + ".transform flattens the shape: its determinant is 0",
+                "give a matrix that has an inverse");
   mirrors_ = determinant < 0;
   inverse_transpose_ = glm::inverseTranspose(linear_);
 }

@@ -26,14 +26,16 @@ Scene load(const std::string& text) {
 
 template <typename T>
 const T& shape(const Scene& scene, const std::string& name) {
-  const auto found = std::find_if(scene.shapes.begin(), scene.shapes.end(), [&](const Shape& s) { return s.name == name; });
+  const auto found =
+      std::find_if(scene.shapes.begin(), scene.shapes.end(), [&](const Shape& s) { return s.name == name; });
   REQUIRE(found != scene.shapes.end());
   return std::get<T>(found->geometry);
 }
 
 template <typename T>
 const T& light(const Scene& scene, const std::string& name) {
-  const auto found = std::find_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.name == name; });
+  const auto found =
+      std::find_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.name == name; });
   REQUIRE(found != scene.lights.end());
   return std::get<T>(found->emitter);
 }
