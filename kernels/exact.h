@@ -46,7 +46,7 @@ FUNCTION FlatHit flat_hit(__global const FlatData* flat, const RayPacket rays, c
 }
 
 // Is there an exact shape, of whatever material, in (t_min, t_max)? Glass too: shadow rays take it as opaque, its light
-// is the photons' business. `from` is the exact shape that the ray leaves, or NONE.
+// is the photons' business. `from` is the exact shape that the ray leaves, or NO_INDEX.
 FUNCTION Mask exact_any_hit(const Scene scene, const RayPacket rays, const Uint from) {
   Mask met = 0;
   for (uint i = 0; i < scene.n_spheres; ++i) met |= sphere_distance(&scene.spheres[i], rays, from == i) < rays.t_max;

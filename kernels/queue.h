@@ -48,6 +48,11 @@ FUNCTION RayPacket load_rays(__global const float* rays, uint stride, uint i) {
 }
 
 #ifdef __OPENCL_VERSION__
+// Three fields of one entry, for what is not done in packets.
+FUNCTION float3 triple_at(__global const float* array, uint field, uint stride, uint i) {
+  return (float3)(array[field * stride + i], array[(field + 1) * stride + i], array[(field + 2) * stride + i]);
+}
+
 // One ray of a packet, for the tree.
 FUNCTION Ray lane_ray(const RayPacket packet, uint lane) {
   Ray ray;

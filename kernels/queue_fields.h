@@ -8,7 +8,7 @@
 #define RAY_T_MIN 6            // [m]: hits at t <= t_min belong to the surface that the ray leaves
 #define RAY_WEIGHT 7           // 3 floats: camera: R, T and transmittance so far; photon: power [W]
 #define RAY_MEDIA 10           // uint: stack of media
-#define RAY_FROM 11            // uint: exact shape that the ray leaves, or NONE
+#define RAY_FROM 11            // uint: exact shape that the ray leaves, or NO_INDEX
 #define RAY_PATH 12            // uint: random bits of the path
 #define RAY_SLOT 13            // uint: camera: pixel; photon: surfaces met so far
 #define RAY_FIELDS 14
@@ -19,7 +19,7 @@
 #define SURFACE_SHADING 7      // 3 floats: shading normal, unit length, on the same side
 #define SURFACE_MATERIAL 10    // uint
 #define SURFACE_ERROR 11       // [m]: bound of the distance between the position and the true surface
-#define SURFACE_FROM 12        // uint: exact shape, for the rays that leave; NONE on a mesh
+#define SURFACE_FROM 12        // uint: exact shape, for the rays that leave; NO_INDEX on a mesh
 #define SURFACE_U 13           // texture coordinates
 #define SURFACE_V 14
 #define SURFACE_FIELDS 15

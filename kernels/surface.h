@@ -38,7 +38,7 @@ FUNCTION Vec3 diffuse_reflectance(const Scene scene, __global const MaterialData
                                   __global const float* surfaces, uint stride, uint i) {
   const Vec3 rho_d = uniform3(material->diffuse);
 #if HAS_TEXTURES
-  if (material->texture != NONE) {
+  if (material->texture != NO_INDEX) {
     const Vec3 texel = texture_value(scene, &scene.textures[material->texture],
                                      load1(surfaces, SURFACE_U, stride, i), load1(surfaces, SURFACE_V, stride, i));
     return material->texture_replaces ? texel : multiply3(texel, rho_d);
@@ -51,7 +51,7 @@ FUNCTION Vec3 diffuse_reflectance(const Scene scene, __global const MaterialData
 // the bound serves its neighbours only; on a mesh the ray must get clear of the facet and of those that share its edge.
 FUNCTION Float leaving_t_min(const SurfacePacket surface, const Vec3 direction) {
   const Float cosine = magnitude(dot3(direction, surface.geometric_normal));
-  return surface.from == NONE ? surface.error / larger(cosine, 0.03f) : surface.error;
+  return surface.from == NO_INDEX ? surface.error / larger(cosine, 0.03f) : surface.error;
 }
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef VITRUM_TYPES_H
 #define VITRUM_TYPES_H
 
-#define NONE 0xffffffffu
+#define NO_INDEX 0xffffffffu
 
 // Exact sphere.
 typedef struct {
@@ -37,8 +37,8 @@ typedef struct {
 // A triangle's corners as indices into the buffers of positions, normals and texture coordinates.
 typedef struct {
   uint position[3];
-  uint normal[3];              // NONE in [0]: flat
-  uint texcoord[3];            // NONE in [0]: none
+  uint normal[3];              // NO_INDEX in [0]: flat
+  uint texcoord[3];            // NO_INDEX in [0]: none
   uint material;
 } TriangleData;
 
@@ -51,7 +51,7 @@ typedef struct {
   float emission[3];           // [W/(m2 sr)]
   uint surface;                // SURFACE_...
   float diffuse[3];            // rho_d
-  uint texture;                // index into textures, or NONE
+  uint texture;                // index into textures, or NO_INDEX
   float specular[3];           // Phong rho_s
   float shininess;             // Phong s
   uint medium;                 // of a dielectric: index into media

@@ -1,2 +1,34 @@
+// vitrum's command line: what the subcommands have in common.
+
 #include <cstdio>
-int main() { std::puts("vitrum"); }
+
+#include "commands/commands.hpp"
+#include "core/error.hpp"
+#include "core/version.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app("vitrum renders glass: transparent, glossy and absorbing objects with their caustics, on OpenCL devices.");
+  app.set_version_flag("--version", std::string("vitrum ") + vitrum::version());
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::help);
+  vitrum::add_render_command(app);
+  vitrum::add_info_command(app);
+  vitrum::add_devices_command(app);
+  app.footer("First steps:\n  vitrum render models/default_scene/scene.toml -o picture.png\n  vitrum render --help");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
+  } catch (const vitrum::Error& error) {
+    std::fprintf(stderr, "vitrum: error: %s\n", error.what());
+    return 1;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "vitrum: error: memory ran out; use fewer photons, fewer pixels or a smaller scene\n");
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vitrum: error: %s; this should not happen, please report it\n", error.what());
+    return 1;
+  }
+  return 0;
+}

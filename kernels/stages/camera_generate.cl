@@ -32,7 +32,7 @@ __kernel void camera_generate(__global const CameraData* camera, const uint firs
   store1(rays, RAY_T_MIN, stride, i, 0.0f);
   store3(rays, RAY_WEIGHT, stride, i, make_vec3(1.0f, 1.0f, 1.0f));
   store_bits(rays, RAY_MEDIA, stride, i, media);
-  store_bits(rays, RAY_FROM, stride, i, NONE);
+  store_bits(rays, RAY_FROM, stride, i, NO_INDEX);
   store_bits(rays, RAY_PATH, stride, i, path);
   store_bits(rays, RAY_SLOT, stride, i, pixel);
 }

@@ -56,7 +56,7 @@ __kernel void camera_shade(SCENE_PARAMETERS, const uint count, const uint stride
     // A light shows its front only.
     Vec3 own = uniform3(e.material->emission);
     if (e.material->front_only && !e.entering) own = zero;
-    if (e.material->texture != NONE || e.material->diffuse[0] > 0.0f || e.material->diffuse[1] > 0.0f ||
+    if (e.material->texture != NO_INDEX || e.material->diffuse[0] > 0.0f || e.material->diffuse[1] > 0.0f ||
         e.material->diffuse[2] > 0.0f) {
       const Vec3 rho_d = diffuse_reflectance(scene, e.material, surfaces, stride, i);
       if (kind == SURFACE_UNLIT) own = add3(own, rho_d);

@@ -66,7 +66,7 @@ __kernel void photon_interact(SCENE_PARAMETERS, const uint count, const uint str
 #endif
     } else {
       const int diffuse = e.material->surface == SURFACE_OPAQUE &&
-                          (e.material->texture != NONE || e.material->diffuse[0] > 0.0f ||
+                          (e.material->texture != NO_INDEX || e.material->diffuse[0] > 0.0f ||
                            e.material->diffuse[1] > 0.0f || e.material->diffuse[2] > 0.0f);
       const Uint end = diffuse ? (depth > 0 ? (Uint)OUTCOME_STORED : (Uint)OUTCOME_DIRECT) : (Uint)OUTCOME_ABSORBED;
       outcome = e.here ? end : outcome;

@@ -63,3 +63,19 @@ __kernel void sort_scatter(const GridData grid, const uint count, const uint str
     map[(PHOTON_POWER + 2) * stride + to] = photon.s6;
   }
 }
+
+// The least and the greatest coordinates of each block's photons; w means nothing.
+__kernel void sort_bounds(const uint count, const uint blocks, __global const float8* photons,
+                          __global float8* bounds) {
+  const uint block = get_global_id(0);
+  if (block >= blocks) return;
+  const uint last = (uint)((ulong)count * (block + 1) / blocks);
+  float4 low = INFINITY;
+  float4 high = -INFINITY;
+  for (uint i = (uint)((ulong)count * block / blocks); i < last; ++i) {
+    const float4 place = photons[i].lo;
+    low = place < low ? place : low;
+    high = place > high ? place : high;
+  }
+  bounds[block] = (float8)(low, high);
+}

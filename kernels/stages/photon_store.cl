@@ -7,11 +7,12 @@
 
 #define SUMS (OUTCOMES * 3 + 3)
 
-// Counts what is stored and what is alive in each block, and adds up power by outcome: fixed point, 2^32 units to
-// `unit` watts, so that sums are exact and the order does not matter. sums: [block][OUTCOMES * 3, then absorbed 3].
+// Counts what is stored and what is alive in each block, and adds up power by outcome: fixed point, `per_unit` units to
+// the watt, so that sums are exact and the order does not matter. The living are added up only where
+// they have just been shot. sums: [block][OUTCOMES * 3, then absorbed by media 3].
 __kernel void photon_tally(const uint count, const uint stride, const float per_unit, __global const float* rays,
                            __global const uint* outcomes, __global const float* absorbed, const uint absorbs,
-                           __global uint* counts, __global ulong* sums) {
+                           const uint shot, __global uint* counts, __global ulong* sums) {
   const uint block = get_global_id(0);
   const uint first = block * BLOCK;
   if (first >= count) return;
@@ -25,7 +26,8 @@ __kernel void photon_tally(const uint count, const uint stride, const float per_
     stored += outcome == OUTCOME_STORED;
     alive += outcome == OUTCOME_ALIVE;
     for (uint c = 0; c < 3; ++c) {
-      if (outcome < OUTCOMES) sum[outcome * 3 + c] += (ulong)fma(rays[(RAY_WEIGHT + c) * stride + i], per_unit, 0.5f);
+      if (outcome < OUTCOMES && (shot || outcome != OUTCOME_ALIVE))
+        sum[outcome * 3 + c] += (ulong)fma(rays[(RAY_WEIGHT + c) * stride + i], per_unit, 0.5f);
       if (absorbs) sum[OUTCOMES * 3 + c] += (ulong)fma(absorbed[c * stride + i], per_unit, 0.5f);
     }
   }
@@ -77,4 +79,13 @@ __kernel void photon_append(const uint count, const uint stride, __global const 
       ++to_next;
     }
   }
+}
+
+// Moves `count` waiting photons, from `first` on, into a queue of their own. All of them are alive.
+__kernel void photon_move(const uint count, const uint from_stride, const uint first, __global const float* from,
+                          const uint stride, __global float* rays, __global uint* outcomes) {
+  const uint i = get_global_id(0);
+  if (i >= count) return;
+  for (uint field = 0; field < RAY_FIELDS; ++field) rays[field * stride + i] = from[field * from_stride + first + i];
+  outcomes[i] = OUTCOME_ALIVE;
 }

@@ -2,6 +2,9 @@
 // Reads: the scene's shapes, queue rays [0, count). Writes: surfaces [0, count).
 #include "exact.h"
 #include "surface.h"
+#if HAS_MESH
+#include "tree.h"
+#endif
 
 // Exact shapes, WIDTH rays at a time. They are numbered spheres first, then flats.
 __kernel void trace_exact(SCENE_PARAMETERS, const uint count, const uint stride, __global const float* rays,
@@ -13,7 +16,7 @@ __kernel void trace_exact(SCENE_PARAMETERS, const uint count, const uint stride,
   const Uint from = load_bits(rays, RAY_FROM, stride, i);
 
   Float t = INFINITY;
-  Uint shape = NONE;
+  Uint shape = NO_INDEX;
   Float u = 0.0f;
   Float v = 0.0f;
   for (uint s = 0; s < scene.n_spheres; ++s) {
@@ -32,7 +35,7 @@ __kernel void trace_exact(SCENE_PARAMETERS, const uint count, const uint stride,
   }
 
   // The place is put back on the surface, which takes the rounding of t off it.
-  const Vec3 reached = along3(packet.origin, shape == NONE ? 0.0f : t, packet.direction);
+  const Vec3 reached = along3(packet.origin, shape == NO_INDEX ? 0.0f : t, packet.direction);
   Vec3 position = reached;
   Vec3 normal = make_vec3(0.0f, 1.0f, 0.0f);
   Uint material = 0;
@@ -82,3 +85,66 @@ __kernel void trace_exact(SCENE_PARAMETERS, const uint count, const uint stride,
   store1(surfaces, SURFACE_V, stride, i, tex_v);
 #endif
 }
+
+#if HAS_MESH
+// Meshes, one ray to a work-item: replaces what trace_exact found where a triangle comes before it.
+__kernel void trace_mesh(SCENE_PARAMETERS, const uint count, const uint stride, __global const float* rays,
+                         __global float* surfaces) {
+  const uint i = get_global_id(0);
+  if (i >= count) return;
+  const Scene scene = SCENE;
+  Ray ray;
+  ray.origin = triple_at(rays, RAY_ORIGIN, stride, i);
+  ray.direction = triple_at(rays, RAY_DIRECTION, stride, i);
+  ray.t_min = rays[RAY_T_MIN * stride + i];
+  ray.t_max = INFINITY;
+  Hit hit;
+  hit.t = surfaces[SURFACE_T * stride + i];
+  hit.shape = as_uint(surfaces[SURFACE_FROM * stride + i]);
+  hit.primitive = 0;
+  if (!tree_closest(&ray, scene.nodes, scene.leaves, &hit)) return;
+
+  const uint mesh = hit.shape - (scene.n_spheres + scene.n_flats);
+  __global const TriangleData* triangle = &scene.triangles[scene.meshes[mesh].first_triangle + hit.primitive];
+  const float3 a = vload3(triangle->position[0], scene.positions);
+  const float3 b = vload3(triangle->position[1], scene.positions);
+  const float3 c = vload3(triangle->position[2], scene.positions);
+  const float w = 1.0f - hit.u - hit.v;
+  const float3 position = fma((float3)(w), a, fma((float3)(hit.u), b, hit.v * c));
+  const float3 geometric = normalize(cross(b - a, c - a));
+  float3 shading = geometric;
+  if (triangle->normal[0] != NO_INDEX) {
+    const float3 n = fma((float3)(w), vload3(triangle->normal[0], scene.normals),
+                         fma((float3)(hit.u), vload3(triangle->normal[1], scene.normals),
+                             hit.v * vload3(triangle->normal[2], scene.normals)));
+    if (dot(n, geometric) > 1e-6f) shading = normalize(n);
+  }
+  const float3 largest = fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(ray.origin)));
+  surfaces[SURFACE_T * stride + i] = hit.t;
+  surfaces[(SURFACE_POSITION + 0) * stride + i] = position.x;
+  surfaces[(SURFACE_POSITION + 1) * stride + i] = position.y;
+  surfaces[(SURFACE_POSITION + 2) * stride + i] = position.z;
+  surfaces[(SURFACE_NORMAL + 0) * stride + i] = geometric.x;
+  surfaces[(SURFACE_NORMAL + 1) * stride + i] = geometric.y;
+  surfaces[(SURFACE_NORMAL + 2) * stride + i] = geometric.z;
+  surfaces[(SURFACE_SHADING + 0) * stride + i] = shading.x;
+  surfaces[(SURFACE_SHADING + 1) * stride + i] = shading.y;
+  surfaces[(SURFACE_SHADING + 2) * stride + i] = shading.z;
+  surfaces[SURFACE_MATERIAL * stride + i] = as_float(triangle->material);
+  surfaces[SURFACE_ERROR * stride + i] = SURFACE_ROUNDING * fmax(largest.x, fmax(largest.y, largest.z));
+  surfaces[SURFACE_FROM * stride + i] = as_float(NO_INDEX);
+#if HAS_TEXTURES
+  float u = 0.0f;
+  float v = 0.0f;
+  if (triangle->texcoord[0] != NO_INDEX) {
+    const float2 uv = w * vload2(triangle->texcoord[0], scene.texcoords) +
+                      hit.u * vload2(triangle->texcoord[1], scene.texcoords) +
+                      hit.v * vload2(triangle->texcoord[2], scene.texcoords);
+    u = uv.x;
+    v = uv.y;
+  }
+  surfaces[SURFACE_U * stride + i] = u;
+  surfaces[SURFACE_V * stride + i] = v;
+#endif
+}
+#endif

@@ -18,8 +18,8 @@ std::size_t Film::values_of(int channels) const {
 void Film::add(uint64_t pass, const std::string& name, int channels, std::span<const float> values, double samples) {
   assert(channels >= 1 && values.size() == values_of(channels) && samples > 0);
   const auto [place, is_new] =
-      planes_[pass % planes_.size()].try_emplace(name, Plane{name, channels, 0, std::vector<double>()});
-  Plane& plane = place->second;
+      planes_[pass % planes_.size()].try_emplace(name, FilmPlane{name, channels, 0, std::vector<double>()});
+  FilmPlane& plane = place->second;
   assert(plane.channels == channels);
   if (is_new) plane.sums.resize(values_of(channels), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) plane.sums[i] += values[i];
@@ -34,7 +34,7 @@ std::vector<std::string> Film::names() const {
   return {all.begin(), all.end()};
 }
 
-const Plane* Film::plane(const std::string& name, int replicate) const {
+const FilmPlane* Film::plane(const std::string& name, int replicate) const {
   const auto& planes = planes_.at(std::size_t(replicate));
   const auto found = planes.find(name);
   return found == planes.end() ? nullptr : &found->second;
@@ -44,7 +44,7 @@ std::vector<double> Film::mean(const std::string& name) const {
   std::vector<double> sums;
   double samples = 0;
   for (int r = 0; r < replicates(); ++r) {
-    const Plane* part = plane(name, r);
+    const FilmPlane* part = plane(name, r);
     if (!part) continue;
     sums.resize(part->sums.size(), 0.0);
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += part->sums[i];
@@ -60,7 +60,7 @@ std::vector<double> Film::variance_of_mean(const std::string& name) const {
   double samples = 0;
   int filled = 0;
   for (int r = 0; r < replicates(); ++r) {
-    const Plane* part = plane(name, r);
+    const FilmPlane* part = plane(name, r);
     if (!part) continue;
     for (std::size_t i = 0; i < variance.size(); ++i) {
       const double deviation = part->sums[i] / part->samples - centre[i];
@@ -80,7 +80,7 @@ void Film::merge(const Film& other) {
   if (other.replicates() != replicates()) throw Error({}, "the films differ in their number of replicates", mend);
   for (int r = 0; r < replicates(); ++r) {
     for (const auto& [name, theirs] : other.planes_[std::size_t(r)]) {
-      const Plane* ours = plane(name, r);
+      const FilmPlane* ours = plane(name, r);
       if (ours && ours->channels != theirs.channels) {
         throw Error({}, "the films differ in the channels of their plane '" + name + "'", mend);
       }
@@ -90,7 +90,7 @@ void Film::merge(const Film& other) {
     for (const auto& [name, theirs] : other.planes_[std::size_t(r)]) {
       const auto [place, is_new] = planes_[std::size_t(r)].try_emplace(name, theirs);
       if (is_new) continue;
-      Plane& ours = place->second;
+      FilmPlane& ours = place->second;
       for (std::size_t i = 0; i < ours.sums.size(); ++i) ours.sums[i] += theirs.sums[i];
       ours.samples += theirs.samples;
     }

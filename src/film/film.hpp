@@ -12,7 +12,7 @@ namespace vitrum {
 
 /// One quantity over the picture, in one replicate: sums over samples, in double, and how many samples they hold.
 /// The mean is sums / samples.
-struct Plane {
+struct FilmPlane {
   std::string name;              ///< "radiance", "caustics", "normal", ...
   int channels = 3;
   double samples = 0;            ///< weight of what `sums` holds; the same for every pixel
@@ -40,7 +40,7 @@ class Film {
   std::vector<std::string> names() const;
 
   /// The plane of one replicate; nullptr if no pass of it has added to the plane.
-  const Plane* plane(const std::string& name, int replicate) const;
+  const FilmPlane* plane(const std::string& name, int replicate) const;
 
   /// Mean over all samples of all replicates; empty if there is no such plane.
   std::vector<double> mean(const std::string& name) const;
@@ -58,7 +58,7 @@ class Film {
   std::size_t values_of(int channels) const;
 
   int width_, height_;
-  std::vector<std::map<std::string, Plane>> planes_;  ///< by replicate and name
+  std::vector<std::map<std::string, FilmPlane>> planes_;  ///< by replicate and name
 };
 
 }  // namespace vitrum

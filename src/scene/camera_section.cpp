@@ -24,11 +24,11 @@ Camera read_camera(const TomlTable& table, const FileContext& context) {
   return camera;
 }
 
-Film read_film(const TomlTable& table) {
+FilmSettings read_film(const TomlTable& table) {
   table.check_keys({}, {"size", "filter", "display", "gamma", "exposure"});
   constexpr int longest_side = 65536;
   constexpr double most_pixels = 1 << 28;
-  Film film;
+  FilmSettings film;
   table.integers("size", {&film.width, &film.height}, 1, longest_side);
   if (double{1} * film.width * film.height > most_pixels)
     table.fail("size", "asks for more than 2^28 pixels", "give a smaller size");

@@ -167,7 +167,7 @@ struct Camera {
 enum class FilmFilter { box };
 enum class DisplayTransform { gamma, srgb };
 
-struct Film {
+struct FilmSettings {
   int width = 512, height = 512;            ///< pixels
   FilmFilter filter = FilmFilter::box;
   DisplayTransform display = DisplayTransform::srgb;
@@ -209,7 +209,7 @@ struct Scene {
   std::string file;                         ///< scene file it was read from
   double metres_per_unit = 1.0;             ///< of the file; everything here is in metres already
   Camera camera;
-  Film film;
+  FilmSettings film;
   Spectrum background{0.0};                 ///< radiance of directions that meet nothing [W/(m2 sr)]
   std::vector<Light> lights;                ///< by name
   std::vector<Shape> shapes;                ///< by name

@@ -34,7 +34,7 @@ void check_overridden_names(const std::vector<std::pair<std::string, TomlTable>>
 /// [camera]
 Camera read_camera(const TomlTable& table, const FileContext& context);
 /// [film]
-Film read_film(const TomlTable& table);
+FilmSettings read_film(const TomlTable& table);
 /// [background]
 Spectrum read_background(const TomlTable& table);
 /// [render]

@@ -52,7 +52,7 @@ dvec3 geometric_normal(const Mesh& mesh, size_t face) {
 
 TEST_CASE("a scene file that says nothing it need not has the Scene's defaults") {
   const Scene scene = load(head + grey + "[shape.s]\ntype = \"sphere\"\ncentre = [1, 2, 3]\nradius = 4\nmaterial = \"m\"\n");
-  const Film film;
+  const FilmSettings film;
   CHECK(scene.film.width == film.width);
   CHECK(scene.film.display == DisplayTransform::srgb);
   CHECK(scene.background == Spectrum(0.0));

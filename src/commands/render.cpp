@@ -1,0 +1,127 @@
+#include "render/render.hpp"
+
+#include <chrono>
+#include <future>
+
+#include "commands/commands.hpp"
+#include "commands/report.hpp"
+#include "commands/scene_arguments.hpp"
+#include "core/log.hpp"
+#include "core/version.hpp"
+#include "core/whole_file.hpp"
+#include "film/images.hpp"
+
+namespace vitrum {
+namespace {
+
+struct RenderArguments {
+  SceneArguments scene;
+  std::vector<std::string> outputs, views;
+  unsigned threads = 0;
+  unsigned group_size = 32;
+  std::string device, report;
+  KernelFiles kernels;
+  bool quiet = false;
+};
+
+/// A view's plane of the film as a layer of a picture.
+PictureLayer layer_of(const Film& film, View view) {
+  PictureLayer layer;
+  layer.name = view_name(view);
+  const bool scalar = view == View::depth || view == View::photons;
+  layer.channels = scalar ? 1 : 3;
+  layer.is_colour = view != View::depth && view != View::normal;
+  const std::vector<double> mean = film.mean(view == View::beauty ? "radiance" : layer.name);
+  layer.values.assign(mean.begin(), mean.end());
+  // A view that the scene has nothing for, such as photons without a caster, is black.
+  if (layer.values.empty())
+    layer.values.assign(static_cast<size_t>(film.width() * film.height() * layer.channels), 0.0f);
+  if (view == View::photons) {
+    // White dots: passes overlay each other. In three channels, so that every format shows them.
+    std::vector<float> white;
+    for (float value : layer.values) white.insert(white.end(), 3, value > 0.0f ? 1.0f : 0.0f);
+    layer.values = std::move(white);
+    layer.channels = 3;
+  }
+  return layer;
+}
+
+void run_render(const RenderArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  set_quiet(arguments.quiet);
+  RenderOptions options;
+  options.kernels = arguments.kernels;
+  if (!arguments.views.empty()) options.views.clear();
+  for (const std::string& name : arguments.views) options.views.push_back(view_of_name(name));
+  for (const std::string& output : arguments.outputs) check_writable(output);
+  if (!arguments.report.empty()) check_whole_file(arguments.report);
+
+  // The device wakes up while the scene is read, and the module for pictures loads beside both.
+  prepare_opencl(arguments.threads);
+  preload_image_module();
+  auto waking = std::async(std::launch::async, [&arguments] {
+    return std::make_unique<Device>(arguments.device, arguments.group_size);
+  });
+  const Scene scene = arguments.scene.load();
+  const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::unique_ptr<Device> device = waking.get();
+  note("device: " + device->info().name);
+
+  RenderResult result = render(scene, *device, options);
+  result.seconds["load"] = load_seconds;
+
+  const auto write_start = std::chrono::steady_clock::now();
+  std::vector<PictureLayer> layers;
+  for (View view : options.views) layers.push_back(layer_of(result.film, view));
+  const std::map<std::string, std::string> metadata = {
+      {"version", version()},
+      {"scene", scene.file},
+      {"seed", std::to_string(scene.render.seed)},
+      {"samples", std::to_string(scene.render.samples)},
+      {"photons", std::to_string(result.photons.photons_shot)},
+      {"device", device->info().name},
+  };
+  const DisplaySettings display{scene.film.display == DisplayTransform::srgb, scene.film.gamma, scene.film.exposure};
+  for (const std::string& output : arguments.outputs) {
+    write_picture(output, scene.film.width, scene.film.height, layers, display, metadata);
+    note("wrote " + output);
+  }
+  result.seconds["write"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - write_start).count();
+  result.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!arguments.report.empty()) {
+    write_whole_file(arguments.report, render_report(scene, *device, result));
+    note("wrote " + arguments.report);
+  }
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("render", "Render a scene to one or more pictures");
+  const auto arguments = std::make_shared<RenderArguments>();
+  arguments->scene.add_to(*command);
+  command->add_option("-o,--output", arguments->outputs,
+                      "Picture to write; .exr is linear with all views as layers, .png and the like show the first view "
+                      "(repeatable)")
+      ->required()
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command->add_option("--view", arguments->views,
+                      "What to show: beauty, photons, caustics, albedo, normal, depth (repeatable)")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_option("--threads", arguments->threads, "Threads of a CPU device; 0: all")->type_name("N");
+  command->add_option("--device", arguments->device, "OpenCL device: number or piece of its name, as `vitrum devices` lists")
+      ->type_name("NAME");
+  command->add_option("--report", arguments->report, "Write settings, times, counts and memory as JSON")->type_name("FILE");
+  command->add_option("--kernels", arguments->kernels.folder, "Read the kernels from this folder instead of the binary")
+      ->type_name("DIR");
+  command->add_option("--dump-kernels", arguments->kernels.dump_folder, "Write the kernels as compiled to this folder")
+      ->type_name("DIR");
+  command->add_option("--group-size", arguments->group_size, "Work-items per group; the picture does not depend on it")
+      ->type_name("N");
+  command->add_flag("--quiet", arguments->quiet, "Print nothing but warnings and errors");
+  command->callback([arguments] { run_render(*arguments); });
+}
+
+}  // namespace vitrum

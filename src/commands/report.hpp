@@ -1,0 +1,13 @@
+#pragma once
+// What a render reports of itself, as JSON.
+
+#include <string>
+
+#include "render/render.hpp"
+
+namespace vitrum {
+
+/// Settings, device, features, times by stage, counts, memory, and energy cut away.
+std::string render_report(const Scene& scene, const Device& device, const RenderResult& result);
+
+}  // namespace vitrum

@@ -1,0 +1,43 @@
+#pragma once
+// The scene as the kernels take it: flat arrays of structs, ready for upload. No OpenCL here.
+
+#include <vector>
+
+#include "device/kernel_headers.hpp"
+#include "scene/features.hpp"
+#include "scene/scene.hpp"
+#include "scene/tree.hpp"
+
+namespace vitrum {
+
+/// Everything that lies in the scene's buffers (kernels/types.h), and the few numbers that go with it.
+/// Shapes are numbered spheres first, then flats, then meshes. Material 0 is the background's.
+struct SceneData {
+  std::vector<kernel::SphereData> spheres;
+  std::vector<kernel::FlatData> flats;
+  std::vector<kernel::MeshData> meshes;
+  std::vector<kernel::TriangleData> triangles;
+  std::vector<float> positions, normals, texcoords;
+  std::vector<TreeTriangle> tree_triangles;
+  std::vector<kernel::MaterialData> materials;
+  std::vector<kernel::MediumData> media;
+  std::vector<kernel::InterfaceData> interfaces;  ///< [from * media.size() + into]
+  std::vector<kernel::LightData> lights;          ///< in the order of Scene::lights
+  std::vector<kernel::LightFace> faces;
+  std::vector<kernel::TextureData> textures;
+  std::vector<float> texels;
+  kernel::CameraData camera{};
+  std::vector<kernel::CasterData> casters;        ///< what photons are aimed at
+  uint32_t eye_media = 0;                         ///< stack of media at the eye
+  float eye_index = 1.0f;                         ///< index of refraction at the eye
+  glm::dvec3 centre{0.0};                         ///< of a sphere around all bounded shapes and the eye [m]
+  double radius = 1.0;                            ///< [m]
+};
+
+/// Throws Error where the scene has more than the kernels can number (255 media).
+SceneData scene_data(const Scene& scene, const Features& features);
+
+/// A border from index n_i into n_t, its k = (n_t - n_i)(n_t + n_i) in two floats (kernels/fresnel.cl).
+kernel::InterfaceData make_interface(double n_i, double n_t);
+
+}  // namespace vitrum

@@ -1,0 +1,61 @@
+#pragma once
+// One pass of photons: emitted towards what refracts or mirrors, traced, stored, sorted into a grid.
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "render/kernel_context.hpp"
+
+namespace vitrum {
+
+/// Power by what became of it [W], red, green and blue. Each is summed by itself, so that the balance
+/// shot = stored + absorbed + direct + lost + cut is a check and not a definition.
+struct PhotonBalance {
+  Spectrum shot{0.0};           ///< aimed at casters and emitted
+  Spectrum stored{0.0};         ///< in the photon map
+  Spectrum absorbed{0.0};       ///< by media, and by surfaces that do not scatter
+  Spectrum direct{0.0};         ///< met a diffuse surface first: direct light's business
+  Spectrum lost{0.0};           ///< left the scene
+  Spectrum cut{0.0};            ///< by the depth limit
+  Spectrum not_aimed{0.0};      ///< sent by the lights elsewhere; infinite where a light has no finite power
+  uint64_t photons_shot = 0, photons_stored = 0;
+  uint64_t surfaces_met = 0;    ///< rays traced
+};
+
+/// Photons in the order in which they were stored, and sorted.
+struct PhotonMap {
+  uint32_t count = 0;
+  Buffer<cl_float8> photons;    ///< kernels/photon_map.h: unsorted
+  Buffer<float> sorted;         ///< structure of arrays
+  uint32_t stride = 0;
+  Buffer<uint32_t> first_of_cell;
+  kernel::GridData grid{};
+  float radius = 0.0f;          ///< of the estimate [m]
+  std::array<float, 4> low{}, high{};  ///< box around all photons [m]
+};
+
+/// Traces photons pass by pass; keeps its buffers between passes.
+class PhotonPass {
+ public:
+  /// Emits at most `largest_pass` photons in one pass.
+  PhotonPass(const KernelContext& context, uint64_t largest_pass);
+  ~PhotonPass();
+
+  /// Photons that a single pass can hold on this device.
+  static uint64_t capacity(const Device& device);
+
+  /// Emits `count` photons of `replicate`, of which `before` have been emitted already. Reports the fraction done.
+  void run(uint32_t replicate, uint64_t before, uint64_t count, const std::function<void(double)>& progress);
+
+  /// What the last run left. Valid until the next.
+  const PhotonMap& map() const;
+  /// Sum over all runs.
+  const PhotonBalance& balance() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vitrum

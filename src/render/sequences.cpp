@@ -1,0 +1,61 @@
+#include "render/sequences.hpp"
+
+#include <cmath>
+
+namespace vitrum {
+namespace {
+
+/// frac(x) in 64-bit fixed point.
+uint64_t fixed_point(long double x) {
+  return static_cast<uint64_t>(std::ldexp(x - std::floor(x), 64));
+}
+
+/// The root of x^(d+1) = x + 1 above 1: the golden ratio for d = 1, the plastic number for d = 2, ...
+long double generalised_golden_ratio(int d) {
+  long double x = 1.5L;
+  for (int i = 0; i < 100; ++i) x = std::pow(1.0L + x, 1.0L / (d + 1));
+  return x;
+}
+
+}  // namespace
+
+uint64_t mix_bits(uint64_t a, uint64_t b) {
+  uint64_t x = a + 0x9e3779b97f4a7c15u * (b + 1);
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+std::array<kernel::SequenceData, PHOTON_DIMENSIONS> photon_sequences(Sampling sampling, uint64_t seed,
+                                                                     uint32_t replicate, uint32_t sequence,
+                                                                     uint64_t first, bool area_light) {
+  std::array<kernel::SequenceData, PHOTON_DIMENSIONS> dimensions{};
+  const uint64_t key = mix_bits(mix_bits(seed, replicate), sequence);
+  const int joint = area_light ? 5 : 3;
+  const long double ratio = generalised_golden_ratio(joint);
+  for (int d = 0; d < PHOTON_DIMENSIONS; ++d) {
+    kernel::SequenceData& data = dimensions[static_cast<size_t>(d)];
+    const uint64_t shift = mix_bits(key, static_cast<uint64_t>(d) + 1);
+    if (sampling == Sampling::independent) {
+      data.start = mix_bits(shift, first);
+      data.alpha = 0;
+    } else {
+      // The choice of a mesh light's face (5) runs on its own.
+      data.alpha = d < joint ? fixed_point(std::pow(ratio, -(d + 1.0L))) : fixed_point(std::sqrt(3.0L));
+      data.start = shift + first * data.alpha;
+    }
+  }
+  return dimensions;
+}
+
+std::array<float, 2> r2_point(uint64_t index) {
+  static const long double ratio = generalised_golden_ratio(2);
+  std::array<float, 2> point{};
+  for (int d = 0; d < 2; ++d) {
+    const uint64_t bits = fixed_point(std::pow(ratio, -(d + 1.0L))) * index;
+    point[static_cast<size_t>(d)] = static_cast<float>(bits >> 40) * 0x1p-24f;
+  }
+  return point;
+}
+
+}  // namespace vitrum
