@@ -1,6 +1,7 @@
 #include "render/camera_pass.hpp"
 
 #include <algorithm>
+#include <deque>
 
 #include "render/photon_pass.hpp"
 #include "render/sequences.hpp"
@@ -27,7 +28,7 @@ struct CameraPass::State {
   Buffer<float> film;
   Buffer<float> surfaces, shares, scatter, children;
   Buffer<uint32_t> counts, totals;
-  std::vector<Generation> generations;
+  std::deque<Generation> generations;  // references to earlier ones stay good as it grows
   cl::Kernel generate, trace_exact, trace_mesh, shade, direct, gather, count_children, scan, append, film_add,
       film_add_runs, film_add_first_hits;
   RayCounts rays_traced;
