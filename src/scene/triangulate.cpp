@@ -78,7 +78,7 @@ class EarClipper {
   }
 
   /// The only vertices that can lie in an ear are those where the border doesn't turn left, or that coincide with
-  /// another. Clipping never makes new ones of them in a polygon that doesn't cross itself. They are kept in the order of x.
+  /// another. Clipping makes no new ones in a polygon that doesn't cross itself. They are kept in the order of x.
   void collect_blockers() {
     std::vector<uint32_t> order(points_.size());
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -113,7 +113,8 @@ class EarClipper {
       // Where the border comes by the ear's base again (the end of a bridge to a hole), it stays outside of the ear.
       if (p == pa || p == pc) continue;
       if (p == pb) {
-        if (is_between_edges(b, points_[ring_[i].previous]) || is_between_edges(b, points_[ring_[i].next])) return false;
+        const glm::dvec2 &before = points_[ring_[i].previous], &after = points_[ring_[i].next];
+        if (is_between_edges(b, before) || is_between_edges(b, after)) return false;
         continue;
       }
       if (orientation(pa, pb, p) >= 0 && orientation(pb, pc, p) >= 0 && orientation(pc, pa, p) >= 0) return false;
