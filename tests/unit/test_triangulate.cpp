@@ -138,6 +138,22 @@ TEST_CASE("polygons on a grid, full of straight corners, are covered exactly") {
   }
 }
 
+TEST_CASE("corners on straight edges are not cut away, whichever corner is tried first") {
+  std::vector<glm::vec2> triangle{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {2, 1}, {1, 2}, {0, 3}, {0, 2}, {0, 1}};
+  for (size_t shift = 0; shift < triangle.size(); ++shift) {
+    std::rotate(triangle.begin(), triangle.begin() + 1, triangle.end());
+    check_exact_cover_of_distinct_corners(flat(triangle));
+  }
+  // An apex over a straight base, which would leave three corners on a line.
+  for (const bool upright : {false, true}) {
+    std::vector<glm::vec2> tent{{2, 3}, {0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}};
+    for (glm::vec2& p : tent) p = upright ? glm::vec2(-p.y, p.x) : p;
+    check_exact_cover_of_distinct_corners(flat(tent));
+    for (glm::vec2& p : tent) p = -p;
+    check_exact_cover_of_distinct_corners(flat(tent));
+  }
+}
+
 TEST_CASE("bridged holes stay holes") {
   SUBCASE("one hole, bridged from a corner") {
     const auto frame = flat({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}});
