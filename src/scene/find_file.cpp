@@ -65,12 +65,13 @@ std::vector<std::string_view> split_file_names(const std::string& named_in, std:
   if (exists(list)) return {list};
   std::vector<std::string_view> words, names;
   size_t name_start = std::string_view::npos;
-  for (size_t at = list.find_first_not_of(space); at != std::string_view::npos; at = list.find_first_not_of(space, at)) {
+  const auto next_word = [&](size_t from) { return list.find_first_not_of(space, from); };
+  for (size_t at = next_word(0); at != std::string_view::npos; at = next_word(at)) {
     const std::string_view word = list.substr(at, list.find_first_of(space, at) - at);
     words.push_back(word);
     if (name_start == std::string_view::npos) name_start = at;
     at += word.size();
-    if (!ends_in(word, extension) && list.find_first_not_of(space, at) != std::string_view::npos) continue;
+    if (!ends_in(word, extension) && next_word(at) != std::string_view::npos) continue;
     names.push_back(list.substr(name_start, at - name_start));
     name_start = std::string_view::npos;
   }

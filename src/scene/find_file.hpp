@@ -15,8 +15,8 @@ std::string path_beside(const std::string& named_in, std::string_view name);
 /// without quotes, or without the comment behind it; the first of these that exists.
 std::optional<std::string> find_file(const std::string& named_in, std::string_view name);
 
-/// The names in a list such as "a.mtl b c.mtl", written in `named_in`, where names themselves may hold spaces: the whole
-/// if that is a file, else what ends in `extension` (of any case), else single words if all of them are files.
+/// The names in a list such as "a.mtl b c.mtl", written in `named_in`, where names themselves may hold spaces: the
+/// whole if that is a file, else what ends in `extension` (of any case), or single words if only they are files.
 std::vector<std::string_view> split_file_names(const std::string& named_in, std::string_view list,
                                                std::string_view extension);
 

@@ -185,8 +185,7 @@ std::string_view LineScanner::rest() {
   const char* const first = cursor_;
   const char* last = first;
   for (; last != end_; ++last) {
-    const bool is_comment = *last == '#' && (last == first || is_space(last[-1])) && (last + 1 == end_ || is_space(last[1]));
-    if (is_comment) break;
+    if (*last == '#' && (last == first || is_space(last[-1])) && (last + 1 == end_ || is_space(last[1]))) break;
   }
   cursor_ = end_;
   while (last != first && is_space(last[-1])) --last;

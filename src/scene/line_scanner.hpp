@@ -50,6 +50,20 @@ class LineScanner {
     return word;
   }
 
+  /// Where the next word begins and the line ends, for those who take words apart themselves and then say how far
+  /// they came.
+  struct Ahead {
+    const char *begin, *end;
+  };
+  Ahead ahead() {
+    skip_space();
+    return {cursor_, end_};
+  }
+  void go_on_from(const char* place) { cursor_ = place; }
+
+  /// Whether a word ends before `place`: at white space, a comment, or the line's end.
+  bool is_word_end(const char* place) const { return place == end_ || is_delimiter(*place); }
+
   /// Next number of the line, nothing at its end. Throws Error for what is no finite number of that type.
   /// Locale-free and correctly rounded (std::from_chars).
   template <typename Number>
@@ -58,7 +72,7 @@ class LineScanner {
     if (cursor_ == end_ || *cursor_ == '#') return std::nullopt;
     Number value;
     const auto [stop, problem] = std::from_chars(cursor_, end_, value);
-    if (problem == std::errc{} && (stop == end_ || is_delimiter(*stop)) && std::isfinite(value)) [[likely]] {
+    if (problem == std::errc{} && is_word_end(stop) && std::isfinite(value)) [[likely]] {
       cursor_ = stop;
       return value;
     }

@@ -54,6 +54,9 @@ std::string short_place(SourceLocation where) {
   return to_string(where);
 }
 
+const char* name_of(ColourSpace space) { return space == ColourSpace::linear ? "linear" : "srgb"; }
+const char* name_of(TextureFilter filter) { return filter == TextureFilter::nearest ? "nearest" : "bilinear"; }
+
 bool any_positive(const Spectrum& value) { return value.r > 0 || value.g > 0 || value.b > 0; }
 bool all_within(const Spectrum& value, double low, double high) {
   // Written so that NaN is within nothing.
@@ -161,7 +164,8 @@ Shader Interpreter::shader_of_illum(const Said<int>& illum) const {
 Shader Interpreter::chosen_shader() {
   if (said_.shader) {
     const Said<std::string>& name = *said_.shader;
-    const auto found = std::find_if(shaders.begin(), shaders.end(), [&](const Shader& s) { return name.value == s.name; });
+    const auto found = std::find_if(shaders.begin(), shaders.end(),
+                                    [&](const Shader& candidate) { return name.value == candidate.name; });
     if (found == shaders.end()) {
       std::string names;
       for (const Shader& s : shaders) names += (names.empty() ? "" : ", ") + std::string(s.name);
@@ -180,7 +184,8 @@ Shader Interpreter::chosen_shader() {
     return transparent;
   }
   if (said_.illum) {
-    took(std::string("shader ") + shader.name, "illum", said_.illum->where, (' ' + std::to_string(said_.illum->value)).c_str());
+    const std::string number = ' ' + std::to_string(said_.illum->value);
+    took(std::string("shader ") + shader.name, "illum", said_.illum->where, number.c_str());
   } else {
     material_.provenance.push_back(std::string("shader ") + shader.name + " (default: no illum)");
   }
@@ -227,7 +232,6 @@ void Interpreter::take_texture() {
   material_.texture_replaces_diffuse = is_worksheet();
   took(std::string("texture ") + texture.path + (is_worksheet() ? " in place of" : " times") + " diffuse", "map_Kd",
        map.where);
-  const auto name_of = [](ColourSpace space) { return space == ColourSpace::linear ? "linear" : "srgb"; };
   if (said_.texture_colour_space) {
     texture.colour_space = said_.texture_colour_space->value;
     took(std::string("texture's colour space ") + name_of(texture.colour_space), "texture_colour_space",
@@ -235,12 +239,11 @@ void Interpreter::take_texture() {
   } else {
     took_default(std::string("texture's colour space ") + name_of(texture.colour_space));
   }
-  const auto filter_name = [](TextureFilter filter) { return filter == TextureFilter::nearest ? "nearest" : "bilinear"; };
   if (said_.texture_filter) {
     texture.filter = said_.texture_filter->value;
-    took(std::string("texture's filter ") + filter_name(texture.filter), "texture_filter", said_.texture_filter->where);
+    took(std::string("texture's filter ") + name_of(texture.filter), "texture_filter", said_.texture_filter->where);
   } else {
-    took_default(std::string("texture's filter ") + filter_name(texture.filter));
+    took_default(std::string("texture's filter ") + name_of(texture.filter));
   }
   result_.texture = std::move(texture);
 }
@@ -273,7 +276,8 @@ void Interpreter::take_emission() {
   const bool adds_Ka = shader_.surface == Surface::unlit || shader_.surface == Surface::opaque;
   if (!said || (is_worksheet() && !adds_Ka)) return;
   if (!all_within(said->value, 0, std::numeric_limits<double>::max())) {
-    refuse(said->where, "the emission " + text_of(said->value) + " is negative or not finite", "write numbers from 0 on");
+    refuse(said->where, "the emission " + text_of(said->value) + " is negative or not finite",
+           "write numbers from 0 on");
   }
   material_.emission = said->value;
   material_.emission_is_light = any_positive(said->value);
@@ -335,7 +339,8 @@ void Interpreter::take_absorption() {
   }
   if (colour) {
     if (!all_within(colour->value, 0, 1)) {
-      refuse(colour->where, "absorption_colour " + text_of(colour->value) + " is out of range", "write numbers from 0 to 1");
+      refuse(colour->where, "absorption_colour " + text_of(colour->value) + " is out of range",
+             "write numbers from 0 to 1");
     }
     if (!(distance->value > 0) || distance->value == infinity) {
       refuse(distance->where, "absorption_distance " + text_of(distance->value) + " is no distance",
@@ -395,11 +400,10 @@ void Interpreter::list_unused() {
   list("priority", said_.priority);
   if (said_.map_Kd) list_unused("map_Kd", said_.map_Kd->value.path, said_.map_Kd->where);
   if (said_.texture_filter) {
-    list_unused("texture_filter", said_.texture_filter->value == TextureFilter::nearest ? "nearest" : "bilinear",
-                said_.texture_filter->where);
+    list_unused("texture_filter", name_of(said_.texture_filter->value), said_.texture_filter->where);
   }
   if (said_.texture_colour_space) {
-    list_unused("texture_colour_space", said_.texture_colour_space->value == ColourSpace::linear ? "linear" : "srgb",
+    list_unused("texture_colour_space", name_of(said_.texture_colour_space->value),
                 said_.texture_colour_space->where);
   }
   for (const Said<std::string>& unused : said_.unused) {
@@ -410,42 +414,5 @@ void Interpreter::list_unused() {
 }  // namespace
 
 InterpretedMaterial interpret(const MtlMaterial& said, MtlReading reading) { return Interpreter(said, reading).run(); }
-
-MtlMaterial overlaid(const MtlMaterial& base, const MtlMaterial& over) {
-  MtlMaterial result = base;
-  if (!over.name.empty()) result.name = over.name;
-  if (!over.where.file.empty()) result.where = over.where;
-  // Different words for one thing: the later word counts alone.
-  if (over.illum) result.shader.reset();
-  if (over.absorption) {
-    result.absorption_colour.reset();
-    result.absorption_distance.reset();
-  }
-  if (over.absorption_colour) result.absorption.reset();
-  const auto lay = [](auto& below, const auto& above) {
-    if (above) below = above;
-  };
-  lay(result.Ka, over.Ka);
-  lay(result.Kd, over.Kd);
-  lay(result.Ks, over.Ks);
-  lay(result.Ke, over.Ke);
-  lay(result.Tf, over.Tf);
-  lay(result.Ns, over.Ns);
-  lay(result.Ni, over.Ni);
-  lay(result.d, over.d);
-  lay(result.illum, over.illum);
-  lay(result.map_Kd, over.map_Kd);
-  lay(result.Pr, over.Pr);
-  lay(result.Pm, over.Pm);
-  lay(result.shader, over.shader);
-  lay(result.absorption, over.absorption);
-  lay(result.absorption_colour, over.absorption_colour);
-  lay(result.absorption_distance, over.absorption_distance);
-  lay(result.priority, over.priority);
-  lay(result.texture_filter, over.texture_filter);
-  lay(result.texture_colour_space, over.texture_colour_space);
-  result.unused.insert(result.unused.end(), over.unused.begin(), over.unused.end());
-  return result;
-}
 
 }  // namespace vitrum

@@ -98,7 +98,8 @@ void MtlReader::read_line() {
   }
   if (materials_.empty()) {
     scan_.fail({}, quoted(keyword) + " stands before any newmtl",
-               known != read_keywords.end() ? "begin each material with newmtl NAME" : "check that this is an MTL file");
+               known != read_keywords.end() ? "begin each material with newmtl NAME"
+                                            : "check that this is an MTL file");
   }
   MtlMaterial& m = material();
   if (known == read_keywords.end()) return not_used(std::string(scan_.line()));
@@ -241,8 +242,8 @@ TextureReference MtlReader::texture() {
   if (name.empty()) scan_.fail({}, "map_Kd names no picture", "write a file name after it");
   const std::optional<std::string> found = find_file(scan_.path(), name);
   if (!found && !unknown.empty()) {
-    scan_.fail(unknown, "map_Kd has no option " + quoted(unknown), "the options are -o -s -t -clamp -blendu -blendv -cc "
-               "-mm -boost -texres -bm -imfchan -type");
+    scan_.fail(unknown, "map_Kd has no option " + quoted(unknown),
+               "the options are -o -s -t -clamp -blendu -blendv -cc -mm -boost -texres -bm -imfchan -type");
   }
   // A picture that is missing is an error where it is wanted: a scene may replace it, or not use the material.
   reference.path = found.value_or(path_beside(scan_.path(), name));

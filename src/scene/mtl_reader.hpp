@@ -18,7 +18,7 @@ struct Said {
 
 /// `map_Kd` with its options. Unsupported options are listed in MtlMaterial::unused.
 struct TextureReference {
-  std::string path;                         ///< as found on disk
+  std::string path;                         ///< as found on disk; where it is missing, as it was written
   glm::dvec2 offset{0.0}, scale{1.0};       ///< -o, -s
   bool clamp = false;                       ///< -clamp on
 };
@@ -43,7 +43,7 @@ struct MtlMaterial {
   std::vector<Said<std::string>> unused;    ///< keywords that vitrum does not use, with their place
 };
 
-/// Reads an MTL file strictly (docs/scene-file.md, "Strictness"). Throws Error with file and line.
+/// Reads an MTL file strictly (docs/obj-and-mtl.md). Throws Error with file, line and column.
 std::vector<MtlMaterial> read_mtl(const std::string& path);
 
 }  // namespace vitrum

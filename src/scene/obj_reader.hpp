@@ -17,7 +17,8 @@ struct ObjFile {
   std::vector<MtlMaterial> library;         ///< all materials of the mtllib files, later ones replace earlier
 };
 
-/// Reads an OBJ file and its MTL libraries strictly. Throws Error with file and line.
+/// Reads an OBJ file and its MTL libraries strictly (docs/obj-and-mtl.md). Throws Error with file, line and column.
+/// A used material that no library has is for the caller to refuse at material_uses: the scene file may define it.
 ObjFile read_obj(const std::string& path);
 
 }  // namespace vitrum

@@ -158,7 +158,9 @@ TEST_CASE("OBJ: material libraries that are missing or broken") {
   const ScratchFolder folder;
   folder.write("a.mtl", "newmtl a\n");
   folder.write("bad.mtl", "newmtl a\nKd x\n");
-  const auto read = [&](const std::string& line) { read_obj(folder.write("a.obj", line + "\n" + three_vertices + "f 1 2 3\n")); };
+  const auto read = [&](const std::string& line) {
+    read_obj(folder.write("a.obj", line + "\n" + three_vertices + "f 1 2 3\n"));
+  };
   check_refused([&] { read("mtllib a.mtl no.mtl"); }, "a.obj:1:14", "no.mtl' does not exist");
   check_refused([&] { read("mtllib bad.mtl"); }, "bad.mtl:2:4", "'x' is no number");
   check_refused([&] { read("mtllib ."); }, "", "this is a folder");
@@ -168,7 +170,8 @@ TEST_CASE("OBJ: noise is refused or read, never worse") {
   // Bytes changed, cut and doubled in a sound file.
   const ScratchFolder folder;
   const std::string sound = "# c\nmtllib a.mtl\n" + three_vertices +
-                            "v 1 1 .5\nvt 0 0\nvt 1 1\nvn 0 0 1\nusemtl a\nf 1/1/1 2/2/1 3/1/1\nf 1 2 4 3\nf -1//-1 -2//1 \\\n -3//1\n";
+                            "v 1 1 .5\nvt 0 0\nvt 1 1\nvn 0 0 1\nusemtl a\nf 1/1/1 2/2/1 3/1/1\nf 1 2 4 3\n"
+                            "f -1//-1 -2//1 \\\n -3//1\n";
   folder.write("a.mtl", "newmtl a\nKd 1 1 1\n");
   const CapturedWarnings warnings;
   uint32_t state = 1;

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -45,7 +46,13 @@ void check_exact_cover(const std::vector<glm::vec3>& polygon, double tolerance =
   const double area = glm::length(newell(polygon)) / 2;
   CHECK(result.is_simple);
   CHECK(result.all_face_alike);
-  CHECK(result.area == doctest::Approx(area).epsilon(tolerance));
+  CHECK(std::abs(result.area / area - 1) < tolerance);
+}
+
+/// The same, with every corner a corner of triangles, also those on straight edges: no T-junctions.
+void check_exact_cover_of_distinct_corners(const std::vector<glm::vec3>& polygon) {
+  check_exact_cover(polygon);
+  CHECK(cut(polygon).triangles.size() == polygon.size() - 2);
 }
 
 std::vector<glm::vec3> flat(const std::vector<glm::vec2>& points) {
@@ -125,7 +132,25 @@ TEST_CASE("polygons on a grid, full of straight corners, are covered exactly") {
       height = next;
     }
     for (int y = height; y > 0; --y) outline.emplace_back(0, y);
-    check_exact_cover(flat(outline));
+    check_exact_cover_of_distinct_corners(flat(outline));
+    for (glm::vec2& p : outline) p = {p.y, -p.x};
+    check_exact_cover_of_distinct_corners(flat(outline));
+  }
+}
+
+TEST_CASE("corners on straight edges are not cut away, whichever corner is tried first") {
+  std::vector<glm::vec2> triangle{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {2, 1}, {1, 2}, {0, 3}, {0, 2}, {0, 1}};
+  for (size_t shift = 0; shift < triangle.size(); ++shift) {
+    std::rotate(triangle.begin(), triangle.begin() + 1, triangle.end());
+    check_exact_cover_of_distinct_corners(flat(triangle));
+  }
+  // An apex over a straight base, which would leave three corners on a line.
+  for (const bool upright : {false, true}) {
+    std::vector<glm::vec2> tent{{2, 3}, {0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}};
+    for (glm::vec2& p : tent) p = upright ? glm::vec2(-p.y, p.x) : p;
+    check_exact_cover_of_distinct_corners(flat(tent));
+    for (glm::vec2& p : tent) p = -p;
+    check_exact_cover_of_distinct_corners(flat(tent));
   }
 }
 
@@ -169,6 +194,28 @@ TEST_CASE("bridged holes stay holes") {
     plate.insert(plate.end(), {{50, 0}, {50, 2}, {0, 2}, {0, 0}});
     check_exact_cover(flat(plate));
   }
+}
+
+TEST_CASE("a convex polygon is not cut into a fan of slivers") {
+  std::vector<glm::vec3> circle;
+  for (int i = 0; i < 1024; ++i) {
+    circle.emplace_back(std::cos(2 * std::numbers::pi * i / 1024), std::sin(2 * std::numbers::pi * i / 1024), 0);
+  }
+  check_exact_cover_of_distinct_corners(circle);
+  std::vector<int> uses(1024);
+  for (const glm::uvec3& t : cut(circle).triangles) {
+    for (int i = 0; i < 3; ++i) ++uses[t[i]];
+  }
+  CHECK(*std::max_element(uses.begin(), uses.end()) < 25);
+}
+
+TEST_CASE("a comb, of whose corners only few are ears at a time, is covered exactly") {
+  constexpr int corners = 4'000;
+  std::vector<glm::vec2> comb;
+  for (int i = 0; i < corners; ++i) comb.emplace_back((i + 1) / 2, i % 4 < 2 ? 100 : 0);
+  comb.insert(comb.end(), {{corners / 2, -1}, {0, -1}});
+  std::reverse(comb.begin(), comb.end());
+  check_exact_cover_of_distinct_corners(flat(comb));
 }
 
 TEST_CASE("a polygon that crosses itself says so and keeps all edges") {
