@@ -102,7 +102,7 @@ static float4 tree_cross(const float4 a, const float4 b, const float4 c, const f
   return fma(a, b, -cd) + fma(-c, d, cd);
 }
 
-// Which triangles of a leaf the ray's line meets, at which t, with the weights of corners b and c.
+// Which triangles of a leaf the ray's line meets, at which t, with the weights of corners b and c; meaningless elsewhere.
 static int4 tree_triangles(const TreeRay* r, __global const TreeLeaf* leaf, float4* t, float4* u, float4* v) {
   __global const float* corners = &leaf->corners[0][0][0];
   const float4 az = vload4(r->kz, corners) - r->origin_z;
@@ -121,10 +121,15 @@ static int4 tree_triangles(const TreeRay* r, __global const TreeLeaf* leaf, floa
   const float4 sum = weight_a + weight_b + weight_c;
   const int4 front = (weight_a >= 0.0f) & (weight_b >= 0.0f) & (weight_c >= 0.0f);
   const int4 back = (weight_a <= 0.0f) & (weight_b <= 0.0f) & (weight_c <= 0.0f);
+  const int4 met = (front | back) & (sum != 0.0f);
+  if (!tree_mask4(met)) {
+    *t = *u = *v = 0.0f;
+    return met;
+  }
   *u = weight_b / sum;
   *v = weight_c / sum;
   *t = r->inverse_kz * fma(weight_a / sum, az, fma(*u, bz, *v * cz));
-  return (front | back) & (sum != 0.0f);
+  return met;
 }
 
 // A child on the stack, with where the ray enters it: t >= 0 orders as its bits do.
