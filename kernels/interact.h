@@ -7,6 +7,7 @@
 #ifndef VITRUM_INTERACT_H
 #define VITRUM_INTERACT_H
 
+#include "contacts.h"
 #include "media.h"
 #include "surface.h"
 
@@ -14,6 +15,7 @@ typedef struct {
   Mask here;                   // the lanes of the group
   __global const MaterialData* material;
   uint stack;                  // media that the rays are in
+  uint contacts;               // borders crossed together with this one (contacts.h)
   int entering;                // 1: the rays meet the front
 } Encounter;
 
@@ -26,6 +28,11 @@ FUNCTION Encounter next_encounter(const Scene scene, const Mask todo, const Surf
   e.stack = LANE(stack, uint, lane);
   e.entering = LANE(entering, int, lane) != 0;
   e.here = todo & (surface.material == material) & (stack == e.stack) & (e.entering ? entering : entering == 0);
+  e.contacts = 0;
+#if HAS_CONTACTS
+  e.contacts = LANE(surface.contacts, uint, lane);
+  e.here &= surface.contacts == e.contacts;
+#endif
   e.material = &scene.materials[material];
   return e;
 }
@@ -41,7 +48,14 @@ typedef struct {
 // Rays along `direction` meet the border of the material's medium.
 FUNCTION Split split_at_dielectric(const Scene scene, const Encounter e, const SurfacePacket surface,
                                    const Vec3 direction) {
-  const Crossing media = crossing(scene, e.stack, e.material->medium, e.entering);
+  Crossing media = crossing(scene, e.stack, e.material->medium, e.entering);
+#if HAS_CONTACTS
+  for (uint rest = e.contacts; rest != 0; rest >>= CONTACT_BITS) {
+    const Crossing next = crossing(scene, media.after, rest & 0xffu, (rest >> 8) & 1u);
+    media.after = next.after;
+    media.into = next.into;
+  }
+#endif
   __global const InterfaceData* data = &scene.interfaces[media.from * scene.n_media + media.into];
   Interface border;
   border.n_i = data->n_i;

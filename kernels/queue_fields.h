@@ -22,6 +22,7 @@
 #define SURFACE_FROM 12        // uint: exact shape, for the rays that leave; NO_INDEX on a mesh
 #define SURFACE_U 13           // texture coordinates
 #define SURFACE_V 14
-#define SURFACE_FIELDS 15
+#define SURFACE_CONTACTS 15    // uint: borders in contact behind this one (kernels/contacts.h)
+#define SURFACE_FIELDS 16
 
 #endif

@@ -14,6 +14,9 @@ typedef struct {
   Float t;                     // [m], INFINITY: nothing
   Vec3 position, geometric_normal, shading_normal;
   Uint material, from;
+#if HAS_CONTACTS
+  Uint contacts;
+#endif
   Float error;
 } SurfacePacket;
 
@@ -30,6 +33,9 @@ FUNCTION SurfacePacket load_surfaces(__global const float* surfaces, uint stride
   s.material = load_bits(surfaces, SURFACE_MATERIAL, stride, i);
   s.error = load1(surfaces, SURFACE_ERROR, stride, i);
   s.from = load_bits(surfaces, SURFACE_FROM, stride, i);
+#if HAS_CONTACTS
+  s.contacts = load_bits(surfaces, SURFACE_CONTACTS, stride, i);
+#endif
   return s;
 }
 

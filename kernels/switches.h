@@ -12,6 +12,9 @@
 #ifndef HAS_MEDIA_STACK
 #error "HAS_MEDIA_STACK: 1 if media may touch or overlap; 0 lets a ray be in one medium at most"
 #endif
+#ifndef HAS_CONTACTS
+#error "HAS_CONTACTS: 1 if a transparent mesh may touch another shape"
+#endif
 #ifndef HAS_ABSORPTION
 #error "HAS_ABSORPTION: 1 if any medium absorbs"
 #endif

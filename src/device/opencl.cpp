@@ -145,7 +145,7 @@ cl::Program Device::build(const std::string& name, const std::string& source, co
   try {
     program.build({device_}, (options + " -DWIDTH=" + std::to_string(width_)).c_str());
   } catch (const cl::Error& error) {
-    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_);
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_).substr(0, 2000);  // the first cause
     throw Error({"kernels/" + name, 0, 0},
                 "the kernel does not build on '" + info_.name + "' (" + opencl_error_name(error.err()) + "):\n" + log,
                 "report this with the output of `vitrum devices`");

@@ -161,7 +161,7 @@ void CameraPass::run(uint32_t replicate, uint32_t first, uint32_t count, uint32_
     const uint64_t key = mix_bits(mix_bits(settings.seed, replicate), independent ? sample + 1 : 0);
     const uint32_t path_seed = static_cast<uint32_t>(key >> 32);
     const std::array<float, 2> jitter = independent ? std::array<float, 2>{} : r2_point(sample);
-    s.light_offsets = {jitter[0], jitter[1], jitter[0]};
+    s.light_offsets = {jitter[0], jitter[1], independent ? 0.0f : golden_point(sample)};
     for (s.first_pixel = 0; s.first_pixel < s.pixels; s.first_pixel += batch_size) {
       const uint32_t in_batch = std::min(batch_size, s.pixels - s.first_pixel);
       s.make_room(1);

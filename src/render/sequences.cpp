@@ -58,4 +58,8 @@ std::array<float, 2> r2_point(uint64_t index) {
   return point;
 }
 
+float golden_point(uint64_t index) {
+  return static_cast<float>(fixed_point(1.0L / generalised_golden_ratio(1)) * index >> 40) * 0x1p-24f;
+}
+
 }  // namespace vitrum

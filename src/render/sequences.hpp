@@ -19,6 +19,9 @@ std::array<kernel::SequenceData, PHOTON_DIMENSIONS> photon_sequences(Sampling sa
 /// Point `index` of the two-dimensional R2 sequence (Roberts 2018), in [0,1)^2.
 std::array<float, 2> r2_point(uint64_t index);
 
+/// Point `index` of the golden ratio's sequence, in [0,1).
+float golden_point(uint64_t index);
+
 /// Well-mixed 64 bits of two numbers (splitmix64's finaliser; Steele, Lea and Flood 2014).
 uint64_t mix_bits(uint64_t a, uint64_t b);
 

@@ -1,12 +1,65 @@
 #include "scene/features.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace vitrum {
 namespace {
 
 bool is_nonzero(const Spectrum& s) { return s.x != 0.0 || s.y != 0.0 || s.z != 0.0; }
+
+struct Box {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void add(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+};
+
+/// Box around a shape, with room for rounding. An infinite plane has the part of its box that `near` meets: itself if it
+/// cuts `near`, nothing otherwise.
+Box box_of(const Shape& shape, const Box* near) {
+  Box box;
+  if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+    box.add(sphere->centre - sphere->radius);
+    box.add(sphere->centre + sphere->radius);
+  } else if (const auto* triangle = std::get_if<Triangle>(&shape.geometry)) {
+    for (const glm::dvec3& p : {triangle->a, triangle->b, triangle->c}) box.add(p);
+  } else if (const auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
+    for (const glm::uvec3& t : mesh->triangles)
+      for (int k = 0; k < 3; ++k) box.add(mesh->positions[t[k]]);
+  } else if (near) {
+    const Plane& plane = std::get<Plane>(shape.geometry);
+    const glm::dvec3 half = 0.5 * (near->high - near->low);
+    const double reach = glm::dot(half, glm::abs(plane.normal)) * (1.0 + 1e-5);
+    if (std::abs(glm::dot(near->low + half - plane.point, plane.normal)) <= reach) box = *near;
+  }
+  const glm::dvec3 room = 1e-5 * glm::max(glm::abs(box.low), glm::abs(box.high));
+  box.low -= room;
+  box.high += room;
+  return box;
+}
+
+/// Does the box of a transparent mesh meet that of another shape? Parts of one mesh do not count as touching.
+bool may_touch(const Scene& scene) {
+  for (const Shape& shape : scene.shapes) {
+    const Mesh* mesh = std::get_if<Mesh>(&shape.geometry);
+    if (!mesh || std::none_of(mesh->materials.begin(), mesh->materials.end(), [&](uint32_t m) {
+          return scene.materials[m].surface == Surface::dielectric;
+        }))
+      continue;
+    const Box box = box_of(shape, nullptr);
+    for (const Shape& other : scene.shapes) {
+      if (&other == &shape) continue;
+      const Box b = box_of(other, &box);
+      if (glm::all(glm::lessThanEqual(box.low, b.high)) && glm::all(glm::lessThanEqual(b.low, box.high))) return true;
+    }
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -39,6 +92,7 @@ Features scene_features(const Scene& scene) {
   }
   // With a single body of one medium a ray is inside it or it is not.
   f.media_stack = media_shapes > 1;
+  f.contacts = f.mesh && f.dielectric && may_touch(scene);
   for (const Light& light : scene.lights) f.light_kinds |= 1u << light.emitter.index();
   f.lights = scene.render.lights && !scene.lights.empty();
   f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;
@@ -49,7 +103,7 @@ Features scene_features(const Scene& scene) {
 std::string Features::build_options() const {
   auto on = [](const char* name, bool value) { return std::string(" -D") + name + (value ? "=1" : "=0"); };
   std::string options = on("HAS_MESH", mesh) + on("HAS_DIELECTRIC", dielectric) + on("HAS_MEDIA_STACK", media_stack) +
-                        on("HAS_ABSORPTION", absorption) + on("HAS_TEXTURES", textures) +
+                        on("HAS_CONTACTS", contacts) + on("HAS_ABSORPTION", absorption) + on("HAS_TEXTURES", textures) +
                         on("HAS_HIGHLIGHTS", highlights) + " -DLIGHT_KINDS=" + std::to_string(light_kinds);
   if (constant_reflectance) {
     char text[64];
@@ -67,6 +121,7 @@ std::string Features::names() const {
   add(mesh, "mesh");
   add(dielectric, "dielectric");
   add(media_stack, "media stack");
+  add(contacts, "contacts");
   add(absorption, "absorption");
   add(textures, "textures");
   add(highlights, "highlights");

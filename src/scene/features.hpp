@@ -14,6 +14,7 @@ struct Features {
   bool mesh = false;            ///< triangle meshes, and so a tree
   bool dielectric = false;      ///< light is refracted somewhere
   bool media_stack = false;     ///< media may touch, overlap or hold the eye or a light
+  bool contacts = false;        ///< a transparent mesh may touch another shape
   bool absorption = false;      ///< some medium absorbs
   bool textures = false;
   bool highlights = false;      ///< some surface has a Phong term
