@@ -211,11 +211,19 @@ cl::Buffer Device::sub_buffer(const cl::Buffer& buffer, size_t offset, size_t by
 }
 
 void Device::launch(const std::string& stage, const cl::Kernel& kernel, size_t count) {
+  launch_groups(stage, kernel, count, group_size_);
+}
+
+void Device::launch_singly(const std::string& stage, const cl::Kernel& kernel, size_t count) {
+  launch_groups(stage, kernel, count, info_.is_cpu ? 1 : group_size_);
+}
+
+void Device::launch_groups(const std::string& stage, const cl::Kernel& kernel, size_t count, size_t group_size) {
   if (count == 0) return;
-  const size_t rounded = (count + group_size_ - 1) / group_size_ * group_size_;
+  const size_t rounded = (count + group_size - 1) / group_size * group_size;
   try {
     cl::Event event;
-    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(rounded), cl::NDRange(group_size_), nullptr, &event);
+    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(rounded), cl::NDRange(group_size), nullptr, &event);
     launched_.emplace_back(stage, event);
   } catch (const cl::Error& error) {
     fail(error, "the stage '" + stage + "'", "another device may do better (--device)");

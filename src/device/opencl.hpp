@@ -115,6 +115,8 @@ class Device {
 
   /// Launches `kernel` on `count` work-items (rounded up to whole groups); its time is booked under `stage`.
   void launch(const std::string& stage, const cl::Kernel& kernel, size_t count);
+  /// The same for a few work-items that each have much to do: every one is a group, so that threads share them.
+  void launch_singly(const std::string& stage, const cl::Kernel& kernel, size_t count);
   void finish();
 
   /// Seconds that the kernels of each stage ran, by the device's own clock; waits for all.
@@ -130,6 +132,7 @@ class Device {
   void fill_zero_bytes(const cl::Buffer& buffer, size_t bytes);
   cl::Buffer sub_buffer(const cl::Buffer& buffer, size_t offset, size_t bytes);
   void collect_timings();
+  void launch_groups(const std::string& stage, const cl::Kernel& kernel, size_t count, size_t group_size);
 
   DeviceInfo info_;
   cl::Device device_;

@@ -118,16 +118,16 @@ struct CameraPass::State {
     Device& device = context.device;
     const uint32_t blocks = (count + block_size - 1) / block_size;
     set_arguments(count_children, 0, count, queue_stride, children, counts);
-    device.launch("camera", count_children, blocks);
+    device.launch_singly("camera", count_children, blocks);
     set_arguments(scan, 0, blocks, uint32_t{1}, counts, totals);
-    device.launch("camera", scan, 1);
+    device.launch_singly("camera", scan, 1);
     const uint32_t born = device.read(totals, 0, 1)[0];
     if (born == 0) return;
     if (generations.size() == depth + 1)
       generations.push_back({device.allocate<float>(size_t{RAY_FIELDS} * queue_stride, "camera rays"), 0});
     Generation& next = generations[depth + 1];
     set_arguments(append, 0, count, queue_stride, rays, surfaces, children, counts, next.count, queue_stride, next.rays);
-    device.launch("camera", append, blocks);
+    device.launch_singly("camera", append, blocks);
     next.count += born;
   }
 

@@ -47,6 +47,14 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
     size[axis] = static_cast<uint32_t>(std::max(2.0, std::ceil(std::log2(cells))));
   }
   const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1))), 8u, 18u);
+  // Spare cells go to the axes along which photons spread, so that places outside of the crowd rarely wrap into it.
+  const bool flat[3] = {size[0] <= 2, size[1] <= 2, size[2] <= 2};
+  while (size[0] + size[1] + size[2] < most && !(flat[0] && flat[1] && flat[2])) {
+    int least = -1;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!flat[axis] && (least < 0 || size[axis] < size[least])) least = axis;
+    ++size[least];
+  }
   while (size[0] + size[1] + size[2] > most) {
     uint32_t& largest = *std::max_element(size, size + 3);
     if (largest <= 2) break;
@@ -88,15 +96,15 @@ void PhotonGrid::sort(PhotonMap& map) {
   cl::Kernel bound = kernel("sort_bounds"), histogram = kernel("sort_count"), sum = kernel("sort_sum"),
              place = kernel("sort_place"), scatter = kernel("sort_scatter");
   set_arguments(bound, 0, count, sort_blocks, map.photons, bounds_);
-  device.launch("sort", bound, sort_blocks);
+  device.launch_singly("sort", bound, sort_blocks);
   set_arguments(histogram, 0, map.grid, count, sort_blocks, map.photons, offsets_);
-  device.launch("sort", histogram, sort_blocks);
+  device.launch_singly("sort", histogram, sort_blocks);
   set_arguments(sum, 0, cells, sort_blocks, sort_parts, offsets_, sums_);
-  device.launch("sort", sum, sort_parts);
+  device.launch_singly("sort", sum, sort_parts);
   set_arguments(place, 0, cells, sort_blocks, sort_parts, sums_, offsets_, map.first_of_cell);
-  device.launch("sort", place, sort_parts);
+  device.launch_singly("sort", place, sort_parts);
   set_arguments(scatter, 0, map.grid, count, map.stride, sort_blocks, map.photons, offsets_, map.sorted);
-  device.launch("sort", scatter, sort_blocks);
+  device.launch_singly("sort", scatter, sort_blocks);
 
   map.low.fill(std::numeric_limits<float>::infinity());
   map.high.fill(-std::numeric_limits<float>::infinity());

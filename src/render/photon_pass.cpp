@@ -143,11 +143,11 @@ struct PhotonPass::State {
     const uint32_t absorbs = context.features.absorption && !shot;
     set_arguments(tally, 0, count, chunk_stride, static_cast<float>(1.0 / watts_per_unit), rays, outcomes, absorbed, absorbs,
                   uint32_t{shot}, counts, sums);
-    device.launch("store", tally, blocks);
+    device.launch_singly("store", tally, blocks);
     set_arguments(scan, 0, blocks, uint32_t{2}, counts, totals);
-    device.launch("store", scan, 1);
+    device.launch_singly("store", scan, 1);
     set_arguments(total, 0, blocks, sums, sum_totals);
-    device.launch("store", total, sums_per_block);
+    device.launch_singly("store", total, sums_per_block);
   }
 
   /// Follows `count` photons in `rays` until few are left, which join the survivors.
@@ -173,7 +173,7 @@ struct PhotonPass::State {
       const uint32_t move = alive < count / 2;
       set_arguments(append, 0, count, chunk_stride, rays, outcomes, counts, map.count, map.photons, move, waiting,
                     survivors_stride, survivors);
-      device.launch("store", append, blocks);
+      device.launch_singly("store", append, blocks);
       map.count += n[0];
       if (move) {
         waiting += alive;
