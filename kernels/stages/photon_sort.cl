@@ -45,22 +45,28 @@ __kernel void sort_place(const uint cells, const uint blocks, const uint parts, 
   if (part == parts - 1) first[cells] = place;
 }
 
-// Moves each photon to its place in the structure of arrays.
-__kernel void sort_scatter(const GridData grid, const uint count, const uint stride, const uint blocks,
-                           __global const float8* photons, __global uint* offsets, __global float* map) {
+// Moves each photon to its place. One cache line a photon; the structure of arrays is made afterwards, in order.
+__kernel void sort_scatter(const GridData grid, const uint count, const uint blocks, __global const float8* photons,
+                           __global uint* offsets, __global float8* sorted) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
   const uint last = (uint)((ulong)count * (block + 1) / blocks);
   for (uint i = (uint)((ulong)count * block / blocks); i < last; ++i) {
     const float8 photon = photons[i];
-    const uint to = offsets[cell_of(grid, photon.s0, photon.s1, photon.s2) * blocks + block]++;
-    map[PHOTON_X * stride + to] = photon.s0;
-    map[PHOTON_Y * stride + to] = photon.s1;
-    map[PHOTON_Z * stride + to] = photon.s2;
-    map[PHOTON_DIRECTION * stride + to] = photon.s3;
-    map[(PHOTON_POWER + 0) * stride + to] = photon.s4;
-    map[(PHOTON_POWER + 1) * stride + to] = photon.s5;
-    map[(PHOTON_POWER + 2) * stride + to] = photon.s6;
+    sorted[offsets[cell_of(grid, photon.s0, photon.s1, photon.s2) * blocks + block]++] = photon;
+  }
+}
+
+// Eight photons to a work-item, from rows to columns. `map` has room for whole groups of eight.
+__kernel void sort_transpose(const uint count, const uint stride, __global const float8* sorted, __global float* map) {
+  const uint i = 8 * get_global_id(0);
+  if (i >= count) return;
+  float rows[64];
+  for (uint k = 0; k < 8; ++k) vstore8(sorted[min(i + k, count - 1)], k, rows);
+  for (uint field = 0; field < PHOTON_FIELDS; ++field) {
+    const float8 column = (float8)(rows[field], rows[8 + field], rows[16 + field], rows[24 + field], rows[32 + field],
+                                   rows[40 + field], rows[48 + field], rows[56 + field]);
+    vstore8(column, 0, map + field * stride + i);
   }
 }
 

@@ -7,9 +7,22 @@
 
 #define SUMS (OUTCOMES * 3 + 3)
 
+// Adds power as fixed point to one outcome's three sums. 32 bits hold a photon of 2^7 times the mean power.
+FUNCTION void add_power(const Vec3 power, const Mask which, const float per_unit, Ulong* sums) {
+  sums[0] += TO_ULONG(TO_UINT(which ? fma(power.x, (Float)per_unit, (Float)0.5f) : 0.0f));
+  sums[1] += TO_ULONG(TO_UINT(which ? fma(power.y, (Float)per_unit, (Float)0.5f) : 0.0f));
+  sums[2] += TO_ULONG(TO_UINT(which ? fma(power.z, (Float)per_unit, (Float)0.5f) : 0.0f));
+}
+
+FUNCTION ulong sum_of_lanes(const Ulong sums) {
+  ulong sum = 0;
+  for (uint lane = 0; lane < WIDTH; ++lane) sum += LANE(sums, ulong, lane);
+  return sum;
+}
+
 // Counts what is stored and what is alive in each block, and adds up power by outcome: fixed point, `per_unit` units to
-// the watt, so that sums are exact and the order does not matter. The living are added up only where
-// they have just been shot. sums: [block][OUTCOMES * 3, then absorbed by media 3].
+// the watt, so that sums are exact and the order does not matter. The living are added up only where they have just
+// been shot. sums: [block][OUTCOMES * 3, then absorbed by media 3].
 __kernel void photon_tally(const uint count, const uint stride, const float per_unit, __global const float* rays,
                            __global const uint* outcomes, __global const float* absorbed, const uint absorbs,
                            const uint shot, __global uint* counts, __global ulong* sums) {
@@ -17,23 +30,29 @@ __kernel void photon_tally(const uint count, const uint stride, const float per_
   const uint first = block * BLOCK;
   if (first >= count) return;
   const uint last = min(first + BLOCK, count);
-  uint stored = 0;
-  uint alive = 0;
-  ulong sum[SUMS];
-  for (uint k = 0; k < SUMS; ++k) sum[k] = 0;
-  for (uint i = first; i < last; ++i) {
-    const uint outcome = outcomes[i];
-    stored += outcome == OUTCOME_STORED;
-    alive += outcome == OUTCOME_ALIVE;
-    for (uint c = 0; c < 3; ++c) {
-      if (outcome < OUTCOMES && (shot || outcome != OUTCOME_ALIVE))
-        sum[outcome * 3 + c] += (ulong)fma(rays[(RAY_WEIGHT + c) * stride + i], per_unit, 0.5f);
-      if (absorbs) sum[OUTCOMES * 3 + c] += (ulong)fma(absorbed[c * stride + i], per_unit, 0.5f);
-    }
+  Uint stored = 0;
+  Uint alive = 0;
+  Ulong by_outcome[SUMS];
+  for (uint k = 0; k < SUMS; ++k) by_outcome[k] = 0;
+  for (uint i = first; i < last; i += WIDTH) {
+    const Mask valid = lanes_below(i, last);
+    const Uint outcome = valid ? LOAD(outcomes, i) : (Uint)OUTCOME_DONE;
+    const Vec3 power = load3(rays, RAY_WEIGHT, stride, i);
+    stored += outcome == OUTCOME_STORED ? (Uint)1 : (Uint)0;
+    alive += outcome == OUTCOME_ALIVE ? (Uint)1 : (Uint)0;
+    for (uint k = shot ? OUTCOME_ALIVE : OUTCOME_ALIVE + 1; k < OUTCOMES; ++k)
+      if (ANY(outcome == k)) add_power(power, outcome == k, per_unit, by_outcome + 3 * k);
+    if (absorbs) add_power(load3(absorbed, 0, stride, i), valid, per_unit, by_outcome + 3 * OUTCOMES);
   }
-  counts[2 * block] = stored;
-  counts[2 * block + 1] = alive;
-  for (uint k = 0; k < SUMS; ++k) sums[block * SUMS + k] = sum[k];
+  uint n_stored = 0;
+  uint n_alive = 0;
+  for (uint lane = 0; lane < WIDTH; ++lane) {
+    n_stored += LANE(stored, uint, lane);
+    n_alive += LANE(alive, uint, lane);
+  }
+  counts[2 * block] = n_stored;
+  counts[2 * block + 1] = n_alive;
+  for (uint k = 0; k < SUMS; ++k) sums[block * SUMS + k] = sum_of_lanes(by_outcome[k]);
 }
 
 // Adds the blocks' sums up. One work-item for each of the SUMS.

@@ -90,11 +90,13 @@ void PhotonGrid::sort(PhotonMap& map) {
     map.stride = padded(count + 8);
     map.sorted = device.allocate<float>(size_t{PHOTON_FIELDS} * map.stride, "photon map");
   }
+  if (rows_.size() < count) rows_ = device.allocate<cl_float8>(count, "photon map");
   device.fill_zero(offsets_);
 
   auto kernel = [&](const char* name) { return context_.programs.kernel("photon_sort", name); };
   cl::Kernel bound = kernel("sort_bounds"), histogram = kernel("sort_count"), sum = kernel("sort_sum"),
-             place = kernel("sort_place"), scatter = kernel("sort_scatter");
+             place = kernel("sort_place"), scatter = kernel("sort_scatter"),
+             transpose = kernel("sort_transpose");
   set_arguments(bound, 0, count, sort_blocks, map.photons, bounds_);
   device.launch_singly("sort", bound, sort_blocks);
   set_arguments(histogram, 0, map.grid, count, sort_blocks, map.photons, offsets_);
@@ -103,8 +105,10 @@ void PhotonGrid::sort(PhotonMap& map) {
   device.launch_singly("sort", sum, sort_parts);
   set_arguments(place, 0, cells, sort_blocks, sort_parts, sums_, offsets_, map.first_of_cell);
   device.launch_singly("sort", place, sort_parts);
-  set_arguments(scatter, 0, map.grid, count, map.stride, sort_blocks, map.photons, offsets_, map.sorted);
+  set_arguments(scatter, 0, map.grid, count, sort_blocks, map.photons, offsets_, rows_);
   device.launch_singly("sort", scatter, sort_blocks);
+  set_arguments(transpose, 0, count, map.stride, rows_, map.sorted);
+  device.launch("sort", transpose, (count + 7) / 8);
 
   map.low.fill(std::numeric_limits<float>::infinity());
   map.high.fill(-std::numeric_limits<float>::infinity());

@@ -27,7 +27,7 @@ class PhotonGrid {
  private:
   KernelContext context_;
   Buffer<uint32_t> offsets_, sums_;
-  Buffer<cl_float8> bounds_;
+  Buffer<cl_float8> bounds_, rows_;
 };
 
 }  // namespace vitrum

@@ -16,7 +16,7 @@ constexpr uint32_t chunk_size = 1u << 16;     // photons in flight: their state 
 const uint32_t chunk_stride = padded(chunk_size);
 const uint32_t survivors_stride = padded(2 * chunk_size);
 constexpr uint32_t sums_per_block = OUTCOMES * 3 + 3;
-constexpr double units_per_photon = 0x1p31;   // of fixed-point power, for the photon of greatest power
+constexpr double units_per_photon = 0x1p25;   // of fixed-point power, for a photon of mean power
 
 Spectrum to_spectrum(const float* values) { return {values[0], values[1], values[2]}; }
 
@@ -100,7 +100,7 @@ struct PhotonPass::State {
 
     chunk = device.allocate<float>(size_t{RAY_FIELDS} * chunk_stride, "photons in flight");
     survivors = device.allocate<float>(size_t{RAY_FIELDS} * survivors_stride, "photons in flight");
-    surfaces = device.allocate<float>(size_t{SURFACE_FIELDS} * chunk_stride, "photons in flight");
+    surfaces = device.allocate<float>(context.features.mesh ? size_t{SURFACE_FIELDS} * chunk_stride : 1, "photons in flight");
     absorbed = device.allocate<float>(context.features.absorption ? size_t{3} * chunk_stride : 1, "photons in flight");
     outcomes = device.allocate<uint32_t>(chunk_stride, "photons in flight");
     counts = device.allocate<uint32_t>(2 * chunk_size / block_size, "photons in flight");
@@ -156,9 +156,9 @@ struct PhotonPass::State {
     const uint32_t blocks = (count + block_size - 1) / block_size;
     const uint32_t max_depth = static_cast<uint32_t>(context.scene.photons.max_depth);
     for (uint32_t alive = count; alive > 0;) {
-      set_arguments(trace_exact, context.device_scene.set_arguments(trace_exact), count, chunk_stride, rays, surfaces);
-      device.launch("trace", trace_exact, context.packets(count));
       if (context.features.mesh) {
+        set_arguments(trace_exact, context.device_scene.set_arguments(trace_exact), count, chunk_stride, rays, surfaces);
+        device.launch("trace", trace_exact, context.packets(count));
         set_arguments(trace_mesh, context.device_scene.set_arguments(trace_mesh), count, chunk_stride, rays, surfaces);
         device.launch("trace", trace_mesh, count);
       }
@@ -200,7 +200,7 @@ PhotonPass::~PhotonPass() = default;
 uint64_t PhotonPass::capacity(const Device& device) {
   // The largest array is that of the unsorted photons; half of the memory may go to the map.
   const uint64_t by_allocation = device.info().max_allocation / sizeof(cl_float8);
-  const uint64_t by_memory = device.info().memory / 2 / (sizeof(cl_float8) + PHOTON_FIELDS * sizeof(float));
+  const uint64_t by_memory = device.info().memory / 2 / (2 * sizeof(cl_float8) + PHOTON_FIELDS * sizeof(float));
   return std::min<uint64_t>(std::min(by_allocation, by_memory), 1u << 30);
 }
 
