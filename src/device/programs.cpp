@@ -46,10 +46,13 @@ void expand(const KernelFiles& files, const std::string& name, std::set<std::str
 
 }  // namespace
 
-std::string stage_source(const KernelFiles& files, const std::string& stage) {
+std::string stages_source(const KernelFiles& files, const std::vector<std::string>& stages) {
   std::set<std::string> seen;
   std::string out;
-  expand(files, "stages/" + stage + ".cl", seen, out);
+  for (const std::string& stage : stages) {
+    out += "#line 1 \"stages/" + stage + ".cl\"\n";
+    expand(files, "stages/" + stage + ".cl", seen, out);
+  }
   return out;
 }
 
@@ -57,21 +60,26 @@ Programs::Programs(const Device& device, const KernelFiles& files, const std::ve
                    const std::string& options) {
   const auto start = std::chrono::steady_clock::now();
   const std::string all_options = "-cl-std=CL1.2" + options;
+  std::map<std::string, std::vector<std::string>> groups;
+  for (const std::string& stage : stages) groups[stage.rfind("photon", 0) == 0 ? "photons" : "camera"].push_back(stage);
   std::map<std::string, std::future<cl::Program>> building;
-  for (const std::string& stage : stages) {
-    const std::string source = stage_source(files, stage);
+  for (const auto& [group, members] : groups) {
+    const std::string source = stages_source(files, members);
     if (!files.dump_folder.empty()) {
       std::filesystem::create_directories(files.dump_folder);
-      std::ofstream dump(files.dump_folder + "/" + stage + ".cl");
+      std::ofstream dump(files.dump_folder + "/" + group + ".cl");
       dump << "// " << all_options << " -DWIDTH=" << device.width() << "\n" << source;
       if (!dump)
         throw Error({files.dump_folder, 0, 0}, "kernels cannot be written here", "give --dump-kernels another folder");
     }
-    building[stage] = std::async(std::launch::async, [&device, stage, source, all_options] {
-      return device.build("stages/" + stage + ".cl", source, all_options);
+    building[group] = std::async(std::launch::async, [&device, name = group + ".cl", source, all_options] {
+      return device.build(name, source, all_options);
     });
   }
-  for (auto& [stage, program] : building) programs_[stage] = program.get();
+  for (auto& [group, program] : building) {
+    const cl::Program built = program.get();
+    for (const std::string& stage : groups[group]) programs_[stage] = built;
+  }
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -15,14 +15,15 @@ struct KernelFiles {
   std::string dump_folder;      ///< what was compiled is written here (--dump-kernels DIR); "": nowhere
 };
 
-/// The text of kernels/stages/`stage`.cl with every #include "..." replaced by the file, each once.
-/// Throws Error for a file that is missing.
-std::string stage_source(const KernelFiles& files, const std::string& stage);
+/// The text of kernels/stages/NAME.cl of each stage, one after the other, with every #include "..." replaced by the
+/// file, each once. Throws Error for a file that is missing.
+std::string stages_source(const KernelFiles& files, const std::vector<std::string>& stages);
 
 /// The kernels of some stages, built for one device and one set of features.
 class Programs {
  public:
-  /// Builds `stages` side by side. Throws Error.
+  /// Builds `stages` as two programs side by side, photons and the rest: to look a program up in a driver's cache takes
+  /// as long as to preprocess it, so there are few. Throws Error.
   Programs(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
            const std::string& options);
 
@@ -32,7 +33,7 @@ class Programs {
   double build_seconds() const { return build_seconds_; }
 
  private:
-  std::map<std::string, cl::Program> programs_;
+  std::map<std::string, cl::Program> programs_;  ///< by stage
   double build_seconds_ = 0.0;
 };
 

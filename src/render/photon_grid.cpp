@@ -9,7 +9,7 @@
 namespace vitrum {
 namespace {
 
-constexpr uint32_t sort_blocks = 8;     // ranges of photons that are counted side by side
+constexpr uint32_t sort_blocks = 4;     // ranges of photons that are counted side by side
 constexpr uint32_t sort_parts = 64;     // ranges of cells whose places are found side by side
 constexpr size_t sample_size = 1024;
 
@@ -46,7 +46,7 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
     const double cells = std::min(static_cast<double>(extent) / cell + 3.0, 4096.0);
     size[axis] = static_cast<uint32_t>(std::max(2.0, std::ceil(std::log2(cells))));
   }
-  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1))), 8u, 18u);
+  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1))), 8u, 17u);
   // Spare cells go to the axes along which photons spread, so that places outside of the crowd rarely wrap into it.
   const bool flat[3] = {size[0] <= 2, size[1] <= 2, size[2] <= 2};
   while (size[0] + size[1] + size[2] < most && !(flat[0] && flat[1] && flat[2])) {
