@@ -43,7 +43,7 @@ FUNCTION Fresnel fresnel(const Interface border, const Float cos_theta_i) {
   const Float v = 1.0f / fma(c, Q, sin2);
   const Float b = v * fma(c, Q, -sin2);
   const Float e = v * border.eta;
-  const Float w = 1.0f / (matched | total ? 1.0f : c + Q);
+  const Float w = 1.0f / ((matched | total) ? 1.0f : c + Q);
   const Float r = border.k_hi * (w * w);
 
   Fresnel f;
@@ -84,7 +84,7 @@ FUNCTION Float transmittance(const Float sigma_a, const Float distance) {
   const Float t = exp(-x);
   // What the product lost in rounding, to first order; not where it is infinite.
   const Float corrected = fma(-t, fma(sigma_a, distance, -x), t);
-  const Float left = x > 88.0f | corrected < 1.17549435e-38f ? 0.0f : corrected;
+  const Float left = ((x > 88.0f) | (corrected < 1.17549435e-38f)) ? 0.0f : corrected;
   return opaque ? (distance > 0.0f ? (Float)0.0f : (Float)1.0f) : left;
 }
 

@@ -75,7 +75,7 @@ class FresnelInputs {
     return std::min(std::bit_cast<float>(bits < 16 ? 0 : bits - below(17)), 1.0f);
   }
 
-  glm::vec3 unit_vector() {
+  glm::dvec3 unit_vector() {
     const double z = 2 * uniform() - 1, angle = 2 * std::acos(-1.0) * uniform(), r = std::sqrt(1 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
