@@ -1,66 +1,58 @@
 // Fresnel, Snell and Bouguer: what light does at a border between two media and inside an absorbing one.
 // The one header shared by the kernels and by the tests on the host.
 //
-// Notation: n_i, n_t are the indices on the incident and on the transmitted side, cos_theta_i in [0,1] is the cosine
-// between the direction back to where the light came from and the normal on the incident side, P = n_i cos_theta_i and
-// Q = n_t cos_theta_t the two normal components. Light is unpolarised, media do not conduct.
+// Notation: eta = n_t / n_i is the index on the transmitted side relative to the incident side, cos_theta_i in [0,1] is
+// the cosine between the direction back to where the light came from and the normal on the incident side. Light is
+// unpolarised, media do not conduct.
 #ifndef VITRUM_FRESNEL_CL
 #define VITRUM_FRESNEL_CL
 
 #include "portability.h"
 
-// A border between two media as Fresnel's equations take it. k = (n_t - n_i)(n_t + n_i) is carried in two floats,
-// made by the host in double: from two rounded indices alone, R is thousands of ulp off near the critical angle.
+// A border between two media as Fresnel's equations take it, made by the host in double (src/device/interface.hpp).
+// k = eta^2 - 1 is carried in two floats: from two rounded indices alone, R is thousands of ulp off near the critical
+// angle, and for indices that are nearly equal.
 typedef struct {
-  Float n_i, n_t;
+  Float eta, eta_inverse;
   Float k_hi, k_lo;
 } Interface;
 
 typedef struct {
   Float R;       // reflectance, 1 at total internal reflection
   Float T;       // transmittance of the border (flux), by its own formula: 1 - R loses it at grazing angles
-  Float r_perp;  // amplitude across the plane of incidence, (P - Q) / (P + Q)
+  Float r_perp;  // amplitude across the plane of incidence, (n_i cos_i - n_t cos_t) / (n_i cos_i + n_t cos_t)
   Float r_par;   // amplitude in the plane of incidence, (n_t cos_i - n_i cos_t) / (n_t cos_i + n_i cos_t)
-  Float bend;    // (n_t cos_t - n_i cos_i) / n_t: what refraction takes off the direction along the normal
+  Float bend;    // cos_t - cos_i / eta: what refraction takes off the direction along the normal
   Mask total;    // total internal reflection, no refracted ray
 } Fresnel;
 
 // The journal cuts the code between [name] and [/name].
 // [fresnel]
 // Fresnel's equations (unpolarised) and Snell's law at cos_theta_i in [0,1]; above 1 counts as 1, NaN stays NaN.
-// Born and Wolf, Principles of Optics, 1.5.2, in a form where nothing cancels for n_t near n_i (r_perp = -k / q^2) nor
-// near the critical angle (Q^2 = P^2 + k in two floats: Dekker 1971, Knuth's TwoSum).
-// Accuracy for n_t / n_i from 1/4 to 4: R within 16 ulp, T within 16 ulp for cos_theta_i > 1e-30.
+// Born and Wolf, Principles of Optics, 1.5.2, with c = cos_theta_i and Q = eta cos_theta_t, in a form where nothing
+// cancels for eta near 1: r_perp = -k / (c + Q)^2 and r_par = -b r_perp. Nor does it near the critical angle: c^2 and
+// k_hi are nearly opposite there, and the one rounding of an fma leaves their small sum exact.
+// Accuracy: R within 16 ulp, T within 16 ulp for cos_theta_i > 1e-30, of the border whose k is k_hi + k_lo.
 FUNCTION Fresnel fresnel(const Interface border, const Float cos_theta_i) {
   const Float c = cos_theta_i > 1.0f ? 1.0f : cos_theta_i;
-  const Float P = border.n_i * c;
-  const Float P_lo = fma(border.n_i, c, -P);
-
-  const Float A = P * P;
-  const Float A_lo = fma(P, P, -A);
-  const Float s = A + border.k_hi;
-  const Float s_k = s - A;
-  const Float s_lo = (A - (s - s_k)) + (border.k_hi - s_k);
-  const Float Q2 = s + (s_lo + (A_lo + fma(2.0f * P, P_lo, border.k_lo)));
-
-  const Mask matched = border.k_hi == 0.0f;
+  const Float Q2 = fma(c, c, border.k_hi) + border.k_lo;
   const Mask total = Q2 < 0.0f;
+  const Mask matched = border.k_hi == 0.0f;
   const Float Q = sqrt(total ? 0.0f : Q2);
-  const Float q = matched ? 1.0f : P + Q;
-  const Float S2 = border.n_i * border.n_i * ((1.0f - c) * (1.0f + c));
-  const Float PQ = P * Q;
-  const Float b = (PQ - S2) / (PQ + S2);
-  const Float r = border.k_hi / (q * q);
-  const Float m = fma(border.n_t * border.n_t, P, border.n_i * border.n_i * Q);
-  const Float ratio = border.n_i * border.n_t / m;
+  const Float sin2 = (1.0f - c) * (1.0f + c);
+  const Float v = 1.0f / fma(c, Q, sin2);
+  const Float b = v * fma(c, Q, -sin2);
+  const Float e = v * border.eta;
+  const Float w = 1.0f / ((matched | total) ? 1.0f : c + Q);
+  const Float r = border.k_hi * (w * w);
 
   Fresnel f;
   f.total = total;
   f.r_perp = total ? 1.0f : -r;
-  f.r_par = total ? 1.0f : matched ? 0.0f : b * r;
-  f.R = total ? 1.0f : matched ? 0.0f : 0.5f * (r * r) * fma(b, b, 1.0f);
-  f.T = total ? 0.0f : matched ? 1.0f : 2.0f * PQ * (1.0f / (q * q) + ratio * ratio);
-  f.bend = border.k_hi / (q * border.n_t);
+  f.r_par = total ? 1.0f : b * r;
+  f.R = total ? 1.0f : 0.5f * (r * r) * fma(b, b, 1.0f);
+  f.T = total ? 0.0f : matched ? 1.0f : 2.0f * (c * Q) * (w * w) * fma(e, e, 1.0f);
+  f.bend = border.k_hi * w * border.eta_inverse;
   return f;
 }
 // [/fresnel]
@@ -69,7 +61,7 @@ FUNCTION Fresnel fresnel(const Interface border, const Float cos_theta_i) {
 // Direction of the refracted ray: unit `direction` towards the border, unit `normal` on the incident side, `f` of the
 // same border and angle. Unit length within rounding. Not to be called at total reflection.
 FUNCTION Vec3 refracted_direction(const Interface border, const Fresnel f, const Vec3 direction, const Vec3 normal) {
-  const Vec3 t = along3(scale3(border.n_i / border.n_t, direction), -f.bend, normal);
+  const Vec3 t = along3(scale3(border.eta_inverse, direction), -f.bend, normal);
   // One Newton step of 1 / sqrt(|t|^2) takes the roundings off the length; index-matched, t is already `direction`.
   const Float stretch = fma(-0.5f, dot3(t, t), 1.5f);
   return select3(border.k_hi == 0.0f, direction, scale3(stretch, t));
@@ -84,14 +76,15 @@ FUNCTION Vec3 reflected_direction(const Vec3 direction, const Vec3 normal) {
 
 // [bouguer]
 // Fraction of the light left after `distance` [m] in a medium of absorption sigma_a [1/m] (Bouguer's law).
-// sigma_a = INFINITY is opaque: nothing is left after any distance above 0. Relative error below 4e-6 down to the
-// least normal float, 0 under it.
+// sigma_a = INFINITY is opaque: nothing is left after any distance above 0; distance is finite. Relative error below
+// 5e-7 down to the least normal float, 0 under it.
 FUNCTION Float transmittance(const Float sigma_a, const Float distance) {
   const Mask opaque = sigma_a == INFINITY;
   const Float x = opaque ? 0.0f : sigma_a * distance;
   const Float t = exp(-x);
-  // What the product lost in rounding, to first order; past 88 the result is 0 anyway.
-  const Float left = x > 87.33f ? 0.0f : fma(-t, fma(sigma_a, distance, -x), t);
+  // What the product lost in rounding, to first order; not where it is infinite.
+  const Float corrected = fma(-t, fma(sigma_a, distance, -x), t);
+  const Float left = ((x > 88.0f) | (corrected < 1.17549435e-38f)) ? 0.0f : corrected;
   return opaque ? (distance > 0.0f ? (Float)0.0f : (Float)1.0f) : left;
 }
 
@@ -99,13 +92,13 @@ FUNCTION Float transmittance(const Float sigma_a, const Float distance) {
 FUNCTION Float absorptance(const Float sigma_a, const Float distance) {
   const Mask opaque = sigma_a == INFINITY;
   const Float x = opaque ? 0.0f : sigma_a * distance;
-  // x (1 - x/2 (1 - x/3 (1 - x/4 ...))), cut where the next term is below 2^-25 for x < 1/4.
-  Float series = 1.0f - x / 7.0f;
-  series = fma(-x / 6.0f, series, 1.0f);
-  series = fma(-x / 5.0f, series, 1.0f);
-  series = fma(-x / 4.0f, series, 1.0f);
-  series = fma(-x / 3.0f, series, 1.0f);
-  series = fma(-x / 2.0f, series, 1.0f);
+  // Taylor series of 1 - exp(-x), cut where the next term is below 2^-25 for x < 1/4.
+  Float series = fma(x, 1.0f / 5040.0f, -1.0f / 720.0f);
+  series = fma(x, series, 1.0f / 120.0f);
+  series = fma(x, series, -1.0f / 24.0f);
+  series = fma(x, series, 1.0f / 6.0f);
+  series = fma(x, series, -0.5f);
+  series = fma(x, series, 1.0f);
   const Float absorbed = x < 0.25f ? x * series : 1.0f - exp(-x);
   return opaque ? (distance > 0.0f ? (Float)1.0f : (Float)0.0f) : absorbed;
 }

@@ -58,8 +58,8 @@ FUNCTION Split split_at_dielectric(const Scene scene, const Encounter e, const S
 #endif
   __global const InterfaceData* data = &scene.interfaces[media.from * scene.n_media + media.into];
   Interface border;
-  border.n_i = data->n_i;
-  border.n_t = data->n_t;
+  border.eta = data->eta;
+  border.eta_inverse = data->eta_inverse;
   border.k_hi = data->k_hi;
   border.k_lo = data->k_lo;
 

@@ -70,8 +70,8 @@ typedef struct {
 
 // A border between two media (fresnel.cl's Interface as it lies in a buffer).
 typedef struct {
-  float n_i, n_t;
-  float k_hi, k_lo;
+  float eta, eta_inverse;      // n_t / n_i and its inverse
+  float k_hi, k_lo;            // eta^2 - 1 in two floats
 } InterfaceData;
 
 typedef struct {
