@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "device/interface.hpp"
 #include "scene/media.hpp"
 
 namespace vitrum {
@@ -451,13 +452,5 @@ class Builder {
 }  // namespace
 
 SceneData scene_data(const Scene& scene, const Features& features) { return Builder(scene, features).build(); }
-
-kernel::InterfaceData make_interface(double n_i, double n_t) {
-  // The kernel multiplies by the rounded indices, so k is that of the rounded ones.
-  const float f_i = static_cast<float>(n_i), f_t = static_cast<float>(n_t);
-  const double k = (static_cast<double>(f_t) - f_i) * (static_cast<double>(f_t) + f_i);
-  const float hi = static_cast<float>(k);
-  return {f_i, f_t, hi, static_cast<float>(k - hi)};
-}
 
 }  // namespace vitrum

@@ -37,7 +37,4 @@ struct SceneData {
 /// Throws Error where the scene has more than the kernels can number (255 media).
 SceneData scene_data(const Scene& scene, const Features& features);
 
-/// A border from index n_i into n_t, its k = (n_t - n_i)(n_t + n_i) in two floats (kernels/fresnel.cl).
-kernel::InterfaceData make_interface(double n_i, double n_t);
-
 }  // namespace vitrum
