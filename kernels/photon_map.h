@@ -4,9 +4,9 @@
 // Sorted, the map is a structure of arrays, field f of photon i at [f * stride + i], so that eight neighbours are read
 // at once.
 //
-// The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two and at least 4 along each axis. So it needs
-// no bounds, far photons cost nothing but a failed test of distance, and the 3 x 3 x 3 cells around a place are never
-// the same cell twice. Cells along x are neighbours in memory.
+// The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
+// far photons cost nothing but a failed test of distance. Of the 3 x 3 x 3 cells around a place each is visited once,
+// also where the grid has fewer along an axis. Cells along x are neighbours in memory; there are at least 4 of them.
 #ifndef VITRUM_PHOTON_MAP_H
 #define VITRUM_PHOTON_MAP_H
 
@@ -42,6 +42,10 @@ FUNCTION uint cell_of(const GridData grid, float x, float y, float z) {
   const uint ix = (uint)cell_coordinate(x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
   return row_of_cells(grid, cell_coordinate(y, grid.inverse_cell), cell_coordinate(z, grid.inverse_cell)) | ix;
 }
+
+// Steps to the first and to the last of the cells around one along an axis of 2^log2 cells, each cell once.
+FUNCTION int first_neighbour(uint log2) { return log2 >= 2 ? -1 : 0; }
+FUNCTION int last_neighbour(uint log2) { return log2 >= 1 ? 1 : 0; }
 
 // A unit direction in 10 bits a component, enough to tell which side of a surface it comes from.
 FUNCTION uint packed_direction(float x, float y, float z) {

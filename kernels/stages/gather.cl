@@ -74,8 +74,8 @@ __kernel void gather(const uint count, const uint stride, const GridData grid, c
   sums.red = 0.0f;
   sums.green = 0.0f;
   sums.blue = 0.0f;
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy) {
+  for (int dz = first_neighbour(grid.log2_z); dz <= last_neighbour(grid.log2_z); ++dz) {
+    for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
       __global const uint* row = first_of_cell + row_of_cells(grid, y + dy, z + dz);
       // Three cells in a row, in one range unless the grid wraps between them.
       const uint straight = min(x_first + 3u, size_x);

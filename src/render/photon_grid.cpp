@@ -9,7 +9,7 @@
 namespace vitrum {
 namespace {
 
-constexpr uint32_t sort_blocks = 4;     // ranges of photons that are counted side by side
+constexpr uint32_t sort_blocks = 2;     // ranges of photons that are counted side by side
 constexpr uint32_t sort_parts = 64;     // ranges of cells whose places are found side by side
 constexpr size_t sample_size = 1024;
 
@@ -43,12 +43,13 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
     std::sort(values.begin(), values.end());
     // The outer twentieths may wrap around.
     const float extent = values.empty() ? 0.0f : values[values.size() * 19 / 20] - values[values.size() / 20];
-    const double cells = std::min(static_cast<double>(extent) / cell + 3.0, 4096.0);
-    size[axis] = static_cast<uint32_t>(std::max(2.0, std::ceil(std::log2(cells))));
+    const double cells = std::min(static_cast<double>(extent) / cell, 4096.0);
+    const double least = axis == 0 ? 2.0 : 0.0;
+    size[axis] = static_cast<uint32_t>(std::max(least, std::ceil(std::log2(std::max(cells, 1.0)))));
   }
-  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1))), 8u, 17u);
+  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1))), 8u, 20u);
   // Spare cells go to the axes along which photons spread, so that places outside of the crowd rarely wrap into it.
-  const bool flat[3] = {size[0] <= 2, size[1] <= 2, size[2] <= 2};
+  const bool flat[3] = {size[0] <= 2, size[1] <= 1, size[2] <= 1};
   while (size[0] + size[1] + size[2] < most && !(flat[0] && flat[1] && flat[2])) {
     int least = -1;
     for (int axis = 0; axis < 3; ++axis)
@@ -57,7 +58,6 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
   }
   while (size[0] + size[1] + size[2] > most) {
     uint32_t& largest = *std::max_element(size, size + 3);
-    if (largest <= 2) break;
     --largest;
   }
   return {1.0f / cell, size[0], size[1], size[2]};
