@@ -41,6 +41,7 @@ typedef struct {
   Float R, T;                  // shares of the reflected and the refracted ray; T = 0: there is none
   Vec3 reflected, refracted;   // unit directions
   uint stack_reflected, stack_refracted;
+  int hidden;                  // 1: the same medium on both sides, so there is nothing to see
 } Split;
 
 #if HAS_DIELECTRIC
@@ -63,11 +64,10 @@ FUNCTION Split split_at_dielectric(const Scene scene, const Encounter e, const S
   border.k_hi = data->k_hi;
   border.k_lo = data->k_lo;
 
-  // Sides are decided by the geometric normal, angles by the shading normal where it agrees.
+  // Sides are decided by the geometric normal, angles by the shading normal where both rays then leave on their side.
   const Vec3 geometric = e.entering ? surface.geometric_normal : negate3(surface.geometric_normal);
 #if HAS_MESH
-  const Vec3 shading = e.entering ? surface.shading_normal : negate3(surface.shading_normal);
-  const Vec3 normal = select3(dot3(direction, shading) < 0.0f, shading, geometric);
+  Vec3 normal = e.entering ? surface.shading_normal : negate3(surface.shading_normal);
 #else
   const Vec3 normal = geometric;
 #endif
@@ -75,14 +75,27 @@ FUNCTION Split split_at_dielectric(const Scene scene, const Encounter e, const S
   Split split;
   split.stack_reflected = media.before;
   split.stack_refracted = media.after;
-  if (media.from == media.into) {
+  split.hidden = media.from == media.into;
+  if (split.hidden) {
     split.R = 0.0f;
     split.T = 1.0f;
     split.reflected = direction;
     split.refracted = direction;
     return split;
   }
+#if HAS_MESH
+  Fresnel f = fresnel(border, -dot3(direction, normal));
+  split.reflected = reflected_direction(direction, normal);
+  split.refracted = refracted_direction(border, f, direction, normal);
+  const Mask astray = (dot3(direction, normal) >= 0.0f) | (dot3(split.reflected, geometric) <= 0.0f) |
+                      ((f.total == 0) & (dot3(split.refracted, geometric) >= 0.0f));
+  if (ANY(e.here & astray)) {
+    normal = select3(astray, geometric, normal);
+    f = fresnel(border, -dot3(direction, normal));
+  }
+#else
   const Fresnel f = fresnel(border, -dot3(direction, normal));
+#endif
 #ifdef CONSTANT_REFLECTANCE
   split.R = f.total ? (Float)1.0f : (Float)CONSTANT_REFLECTANCE;
   split.T = f.total ? (Float)0.0f : (Float)(1.0f - CONSTANT_REFLECTANCE);
@@ -92,17 +105,6 @@ FUNCTION Split split_at_dielectric(const Scene scene, const Encounter e, const S
 #endif
   split.reflected = reflected_direction(direction, normal);
   split.refracted = refracted_direction(border, f, direction, normal);
-#if HAS_MESH
-  // A shading normal can send a ray to the wrong side of the facet; the geometric normal then decides alone.
-  split.reflected = select3(dot3(split.reflected, geometric) > 0.0f, split.reflected,
-                            reflected_direction(direction, geometric));
-  const Mask astray = e.here & (f.total == 0) & (dot3(split.refracted, geometric) >= 0.0f);
-  if (ANY(astray)) {
-    const Fresnel g = fresnel(border, -dot3(direction, geometric));
-    const Vec3 straight = select3(g.total, direction, refracted_direction(border, g, direction, geometric));
-    split.refracted = select3(astray, straight, split.refracted);
-  }
-#endif
   return split;
 }
 

@@ -39,15 +39,16 @@ FUNCTION SurfacePacket load_surfaces(__global const float* surfaces, uint stride
   return s;
 }
 
-// rho_d of lanes that share a material: the texel where there is a texture.
+// rho_d of lanes that share a material: the texel where there is a texture and the place has coordinates (no NaN).
 FUNCTION Vec3 diffuse_reflectance(const Scene scene, __global const MaterialData* material,
                                   __global const float* surfaces, uint stride, uint i) {
   const Vec3 rho_d = uniform3(material->diffuse);
 #if HAS_TEXTURES
   if (material->texture != NO_INDEX) {
-    const Vec3 texel = texture_value(scene, &scene.textures[material->texture],
-                                     load1(surfaces, SURFACE_U, stride, i), load1(surfaces, SURFACE_V, stride, i));
-    return material->texture_replaces ? texel : multiply3(texel, rho_d);
+    const Float u = load1(surfaces, SURFACE_U, stride, i);
+    const Vec3 texel =
+        texture_value(scene, &scene.textures[material->texture], u, load1(surfaces, SURFACE_V, stride, i));
+    return select3(u == u, material->texture_replaces ? texel : multiply3(texel, rho_d), rho_d);
   }
 #endif
   return rho_d;

@@ -82,6 +82,13 @@ __kernel void camera_shade(SCENE_PARAMETERS, const uint count, const uint stride
 #if HAS_DIELECTRIC
     if (kind == SURFACE_DIELECTRIC) {
       const Split split = split_at_dielectric(scene, e, surface, direction);
+#if HAS_MEDIA_STACK
+      if (split.hidden) {
+        shown = select3(e.here, zero, shown);
+        diffuse = select3(e.here, zero, diffuse);
+        specular = select3(e.here, zero, specular);
+      }
+#endif
       const Vec3 weight_reflected = scale3(split.R, arriving);
       const Vec3 weight_refracted = scale3(split.T, arriving);
       const Float reflected = max_channel(weight_reflected);

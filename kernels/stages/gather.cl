@@ -33,9 +33,13 @@ FUNCTION void add_photons(__global const float* map, uint stride, uint first, ui
     const float8 off_plane = fabs(dx * n.x + dy * n.y + dz * n.z);
     counts &= (along < 0.0f) & (off_plane <= max_off_plane);
     const float8 weight = counts ? nearness : 0.0f;
-    sums->red = fma(weight, vload8(0, map + (PHOTON_POWER + 0) * stride + i), sums->red);
-    sums->green = fma(weight, vload8(0, map + (PHOTON_POWER + 1) * stride + i), sums->green);
-    sums->blue = fma(weight, vload8(0, map + (PHOTON_POWER + 2) * stride + i), sums->blue);
+    // What lies behind the last photon may be no number, which a weight of 0 would not take out.
+    const float8 red = vload8(0, map + (PHOTON_POWER + 0) * stride + i);
+    const float8 green = vload8(0, map + (PHOTON_POWER + 1) * stride + i);
+    const float8 blue = vload8(0, map + (PHOTON_POWER + 2) * stride + i);
+    sums->red = fma(weight, counts ? red : 0.0f, sums->red);
+    sums->green = fma(weight, counts ? green : 0.0f, sums->green);
+    sums->blue = fma(weight, counts ? blue : 0.0f, sums->blue);
   }
 }
 // [/gather]

@@ -78,8 +78,8 @@ FUNCTION void store_mesh_surface(const Scene scene, const Ray ray, const Hit hit
   surfaces[SURFACE_ERROR * stride + i] = SURFACE_ROUNDING * fmax(largest.x, fmax(largest.y, largest.z));
   surfaces[SURFACE_FROM * stride + i] = as_float(NO_INDEX);
 #if HAS_TEXTURES
-  float u = 0.0f;
-  float v = 0.0f;
+  float u = NAN;
+  float v = NAN;
   if (triangle->texcoord[0] != NO_INDEX) {
     const float2 uv = w * vload2(triangle->texcoord[0], scene.texcoords) +
                       hit.u * vload2(triangle->texcoord[1], scene.texcoords) +

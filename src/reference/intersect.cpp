@@ -119,7 +119,11 @@ Hit described(const Scene& scene, const Ray& ray, const Candidate& at) {
   hit.geometric_normal = hit.shading_normal = front_normal(scene, at.piece, hit.position);
   hit.from_front = glm::dot(ray.direction, hit.geometric_normal) < 0;
 
-  if (const auto* plane = std::get_if<Plane>(&shape.geometry)) {
+  if (std::holds_alternative<Sphere>(shape.geometry)) {
+    const glm::dvec3& n = hit.geometric_normal;
+    hit.texcoord = glm::dvec2(0.5 + std::atan2(-n.z, n.x) / (2 * std::numbers::pi),
+                              0.5 + std::asin(std::clamp(n.y, -1.0, 1.0)) / std::numbers::pi);
+  } else if (const auto* plane = std::get_if<Plane>(&shape.geometry)) {
     const glm::dvec3 from_point = hit.position - plane->point;
     hit.texcoord = glm::dvec2(glm::dot(from_point, plane->texture_u), glm::dot(from_point, plane->texture_v));
   } else if (const auto* triangle = std::get_if<Triangle>(&shape.geometry)) {
@@ -204,6 +208,7 @@ Media media_at(const Scene& scene, const glm::dvec3& point) {
     for (const auto& [material, turns] : winding)
       if (turns > 0.5 && scene.materials[material].surface == Surface::dielectric) media.push_back(material);
   }
+  std::reverse(media.begin(), media.end());
   return media;
 }
 

@@ -34,7 +34,7 @@ struct Hit {
   glm::dvec3 position{0.0};                 ///< [m]
   glm::dvec3 geometric_normal{0.0};         ///< unit length, to the front of the piece
   glm::dvec3 shading_normal{0.0};           ///< unit length, on the same side; interpolated where a mesh has normals
-  std::optional<glm::dvec2> texcoord;       ///< (u0, v0) before the texture's scale and offset; none on spheres
+  std::optional<glm::dvec2> texcoord;       ///< (u0, v0) before the texture's scale and offset
   bool from_front = true;                   ///< the ray arrives from the side of the geometric normal
   std::vector<Piece> coincident;            ///< all pieces at this place, `piece` among them
   std::vector<Piece> glass;                 ///< those of them that are dielectric
@@ -48,7 +48,8 @@ std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray);
 bool is_occluded(const Scene& scene, const Ray& ray, double distance);
 
 /// Materials of the dielectrics whose insides contain `point`, one entry for each body: inside a sphere, behind a
-/// plane, and where a mesh's faces of one material have a winding number above 1/2 (Jacobson et al. 2013).
+/// plane, and where a mesh's faces of one material have a winding number above 1/2 (Jacobson et al. 2013). The first in
+/// the scene counts as entered last.
 Media media_at(const Scene& scene, const glm::dvec3& point);
 
 }  // namespace vitrum::reference

@@ -4,23 +4,22 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "scene/scene.hpp"
 
 namespace vitrum::reference {
 
-/// Materials of the bodies that contain a place, once for each body. Empty: vacuum.
+/// Materials of the bodies that contain a place, once for each body, in the order they were entered. Empty: vacuum.
 using Media = std::vector<uint32_t>;
 
-/// The one that fills the place: of the highest priority, of equal ones the first in the scene. `none` for vacuum.
+/// The one that fills the place: of the highest priority, of equal ones the one entered last, so that a body inside of
+/// another needs no priority. `none` for vacuum.
 inline uint32_t filling(const Scene& scene, const Media& media) {
   uint32_t best = none;
-  for (const uint32_t medium : media) {
-    if (best == none || scene.materials[medium].priority > scene.materials[best].priority ||
-        (scene.materials[medium].priority == scene.materials[best].priority && medium < best))
-      best = medium;
-  }
+  for (const uint32_t medium : media)
+    if (best == none || scene.materials[medium].priority >= scene.materials[best].priority) best = medium;
   return best;
 }
 
@@ -45,8 +44,8 @@ inline Crossing crossing(const Scene& scene, Media before, const std::vector<Pas
     if (passage.entering) after.push_back(passage.material);
   for (const Passage& passage : passages) {
     if (passage.entering) continue;
-    if (const auto listed = std::find(after.begin(), after.end(), passage.material); listed != after.end())
-      after.erase(listed);
+    if (const auto last = std::find(after.rbegin(), after.rend(), passage.material); last != after.rend())
+      after.erase(std::next(last).base());
     else
       before.push_back(passage.material);
   }

@@ -98,12 +98,17 @@ void Tracer::follow(Branch branch) {
   }
 
   const Spectrum rho_d = diffuse_reflectance(material, *hit);
-  gather(branch, material.emission);
+  if (hit->from_front || !material.emission_is_light) gather(branch, material.emission);
   gather(branch, material.surface == Surface::unlit ? rho_d : direct_light(branch, *hit, material, rho_d));
 
   if (material.surface == Surface::mirror) {
     record(sample.decisions.surfaces, mirrored);
-    follow_mirrored(branch, *hit, towards_viewer(*hit, hit->shading_normal), 1.0);
+    // The shading normal serves where it does not send the ray into the mirror.
+    const glm::dvec3 geometric = towards_viewer(*hit, hit->geometric_normal);
+    glm::dvec3 normal = towards_viewer(*hit, hit->shading_normal);
+    if (glm::dot(reflected_direction(branch.ray.direction, normal), geometric) <= 0) normal = geometric;
+    if (normal == geometric && hit->shading_normal != hit->geometric_normal) record(sample.decisions.surfaces, flat_normal);
+    follow_mirrored(branch, *hit, normal, 1.0);
   } else if (material.surface == Surface::dielectric) {
     split_at_glass(branch, *hit, across);
   }

@@ -1,0 +1,43 @@
+#pragma once
+// Photon passes by themselves, so that a test can look at every photon that is stored.
+
+#include <memory>
+#include <vector>
+
+#include "render/photon_pass.hpp"
+#include "scene/features.hpp"
+
+namespace vitrum {
+
+/// A scene that has no meshes, on a device, ready to shoot photons.
+class PhotonRun {
+ public:
+  PhotonRun(const Scene& scene, Device& device, uint64_t largest_pass)
+      : scene_(scene),
+        device_(device),
+        features_(scene_features(scene)),
+        data_(scene_data(scene, features_)),
+        programs_(device, {}, stages_for(features_), features_.build_options()),
+        device_scene_(upload(device, data_, features_, nullptr)),
+        pass_(KernelContext{device_, programs_, scene_, data_, device_scene_, features_}, largest_pass) {}
+
+  /// Shoots `count` photons of `replicate` and returns those that were stored: x, y, z, -, power r, g, b, - each.
+  std::vector<cl_float8> shoot(uint32_t replicate, uint64_t count) {
+    pass_.run(replicate, 0, count, [](double) {});
+    return device_.read(pass_.map().photons, 0, pass_.map().count);
+  }
+
+  /// Sum over all shots.
+  const PhotonBalance& balance() const { return pass_.balance(); }
+
+ private:
+  const Scene& scene_;
+  Device& device_;
+  Features features_;
+  SceneData data_;
+  Programs programs_;
+  DeviceScene device_scene_;
+  PhotonPass pass_;
+};
+
+}  // namespace vitrum
