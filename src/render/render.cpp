@@ -131,7 +131,14 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
       if (wants(View::depth)) add("depth", FILM_DEPTH, 1);
     }
   }
-  if (photon_pass) result.photons = photon_pass->balance();
+  if (photon_pass) {
+    // Every pass shoots the lights' whole power; the picture is the mean of the passes.
+    result.photons = photon_pass->balance();
+    for (Spectrum PhotonBalance::*power : {&PhotonBalance::shot, &PhotonBalance::stored, &PhotonBalance::absorbed,
+                                           &PhotonBalance::direct, &PhotonBalance::lost, &PhotonBalance::cut,
+                                           &PhotonBalance::not_aimed})
+      result.photons.*power /= static_cast<double>(passes);
+  }
   result.rays = camera.counts();
   for (const auto& [stage, seconds] : device.stage_seconds()) result.seconds[stage] = seconds;
   result.memory = device.memory_by_purpose();
