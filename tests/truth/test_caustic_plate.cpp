@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -95,7 +96,8 @@ TEST_CASE("caustic_plate: ten million photons encircle the flux of all orders wi
       else
         CHECK(std::abs(b.absorbed[c] / (light_power * absorbed) - 1) < 1e-4);
       // What neither the plane nor the glass takes goes to the sky.
-      const double landed = reference::encircled_flux(ball, std::numeric_limits<double>::infinity(), reference::Orders::all);
+      const double landed =
+          reference::encircled_flux(ball, std::numeric_limits<double>::infinity(), reference::Orders::all);
       CHECK(std::abs(b.stored[c] / (light_power * landed) - 1) < 1e-4);
       CHECK(std::abs((b.lost[c] + b.cut[c]) / light_power - (0.1 - landed - absorbed)) < 1e-5);
     }
@@ -138,9 +140,13 @@ TEST_CASE("caustic_plate: independent photons deviate from the encircled flux as
   CHECK(sum_of_squares < 2.0);
 }
 
+// What remains of the error is where irradiance diverges. With an automatic radius of .34 mm on pixels of 3.1 mm the
+// relative RMSE is .147, .041 and .017 with 16, 64 and 256 samples a pixel; of the last, .015 stem from the fold at
+// r = .138, .005 from the axis, .0055 from all other pixels. With 16 samples it is their sparseness at the fold that
+// shows: a radius of 1 mm has .100, and one of 2 mm, with .154, blurs the fold more than it helps.
 TEST_CASE("caustic_plate: ten million photons give the picture of irradiance within 3 %") {
   Device device;
-  const Scene scene = plate({three_glasses});
+  const Scene scene = plate({three_glasses, "render.samples=256"});
   RenderOptions options;
   options.views = {View::caustics};
   const RenderResult result = render(scene, device, options);
