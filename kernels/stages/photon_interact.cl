@@ -61,7 +61,7 @@ __kernel void photon_interact(SCENE_PARAMETERS, const uint count, const uint str
       next_stack = e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : next_stack;
       const Float rest = reflect ? u / split.R : (u - split.R) / (1.0f - split.R);
       const Uint rest_bits = TO_UINT(smaller(rest, 0.99999994f) * 16777216.0f) << 8 | (hash32(path) & 0xffu);
-      next_path = e.here & (depth < 2) ? rest_bits : next_path;
+      next_path = (e.here & (depth < 2)) ? rest_bits : next_path;
       outcome = e.here ? OUTCOME_ALIVE : outcome;
 #endif
     } else {
