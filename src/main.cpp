@@ -3,14 +3,15 @@
 #include <cstdio>
 
 #include "commands/commands.hpp"
+#include "commands/usage.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app("vitrum renders glass: transparent, glossy and absorbing objects with their caustics, on OpenCL devices.");
+  CLI::App app("vitrum renders glass: transparent, glossy and absorbing objects with their caustics, on OpenCL devices.",
+               "vitrum");
   app.set_version_flag("--version", std::string("vitrum ") + vitrum::version());
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::help);
   vitrum::add_render_command(app);
   vitrum::add_info_command(app);
   vitrum::add_devices_command(app);
@@ -18,8 +19,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
+    std::fprintf(stderr, "vitrum: error: %s\n", vitrum::usage_error(app, error).what());
+    return 2;
   } catch (const vitrum::Error& error) {
     std::fprintf(stderr, "vitrum: error: %s\n", error.what());
     return 1;

@@ -77,7 +77,7 @@ __kernel void camera_shade(SCENE_PARAMETERS, const uint count, const uint stride
       store_child(children, CHILD_REFLECTED, CHILD_WEIGHT_REFLECTED, CHILD_STACK_REFLECTED, stride, i, goes_on,
                   mirrored(e, surface, direction), arriving, e.stack);
       which = goes_on ? (Uint)1 : which;
-      cut = e.here & (goes_on == 0) ? max_channel(arriving) : cut;
+      cut = (e.here & (goes_on == 0)) ? max_channel(arriving) : cut;
     }
 #if HAS_DIELECTRIC
     if (kind == SURFACE_DIELECTRIC) {

@@ -59,7 +59,7 @@ FUNCTION void interact(const Scene scene, const SurfacePacket surface, const Mas
       const Float rest = reflect ? u / split.R : (u - split.R) / (1.0f - split.R);
       const Uint rest_bits =
           TO_UINT(smaller(rest, 0.99999994f) * 16777216.0f) << 8 | (hash32(photon->path) & 0xffu);
-      photon->path = e.here & (photon->depth < 2) ? rest_bits : photon->path;
+      photon->path = (e.here & (photon->depth < 2)) ? rest_bits : photon->path;
       outcome = e.here ? OUTCOME_ALIVE : outcome;
 #endif
     } else {

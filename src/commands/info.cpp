@@ -9,14 +9,55 @@
 namespace vitrum {
 namespace {
 
-const char* kind_of(const Shape& shape) {
-  constexpr const char* names[] = {"sphere", "plane", "triangle", "mesh"};
-  return names[shape.geometry.index()];
+std::string text_of(const char* format, double a, double b = 0, double c = 0, double d = 0) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b, c, d);
+  return text;
 }
 
-const char* kind_of(const Light& light) {
-  constexpr const char* names[] = {"point", "directional", "quad", "disc", "sphere", "emissive faces of a mesh"};
-  return names[light.emitter.index()];
+std::string text_of(const glm::dvec3& v) { return text_of("(%.6g, %.6g, %.6g)", v.x, v.y, v.z); }
+
+struct ShapeText {
+  std::string operator()(const Sphere& s) const {
+    return "sphere, centre " + text_of(s.centre) + " m, radius " + text_of("%.6g m", s.radius);
+  }
+  std::string operator()(const Plane& p) const { return "plane through " + text_of(p.point) + " m, normal " + text_of(p.normal); }
+  std::string operator()(const Triangle& t) const {
+    return "triangle, corners " + text_of(t.a) + " " + text_of(t.b) + " " + text_of(t.c) + " m";
+  }
+  std::string operator()(const Mesh& m) const { return "mesh, " + std::to_string(m.triangles.size()) + " triangles"; }
+};
+
+struct LightText {
+  std::string operator()(const PointLight& l) const {
+    return "point at " + text_of(l.position) + " m, intensity " + text_of(l.intensity) + " W/sr";
+  }
+  std::string operator()(const DirectionalLight& l) const {
+    return "directional along " + text_of(l.direction) + ", irradiance " + text_of(l.irradiance) + " W/m2";
+  }
+  std::string operator()(const QuadLight& l) const { return area("quad at " + text_of(l.corner), l.radiance); }
+  std::string operator()(const DiscLight& l) const { return area("disc around " + text_of(l.centre), l.radiance); }
+  std::string operator()(const SphereLight& l) const { return area("sphere around " + text_of(l.centre), l.radiance); }
+  std::string operator()(const MeshLight&) const { return "emissive faces of the mesh"; }
+
+  static std::string area(const std::string& place, const Spectrum& radiance) {
+    return place + " m, radiance " + text_of(radiance) + " W/(m2 sr)";
+  }
+};
+
+/// Triangles of meshes and single ones.
+size_t triangle_count(const Scene& scene) {
+  size_t count = 0;
+  for (const Shape& shape : scene.shapes) {
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) count += mesh->triangles.size();
+    count += std::holds_alternative<Triangle>(shape.geometry);
+  }
+  return count;
+}
+
+/// "3 shapes", "1 light".
+std::string counted(size_t count, const char* what) {
+  return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
 }
 
 template <typename T>
@@ -30,25 +71,31 @@ void run_info(const SceneArguments& arguments) {
   const SceneData data = scene_data(scene, features);
 
   std::printf("scene      %s\n", scene.file.c_str());
-  std::printf("camera     pinhole at (%g, %g, %g) m, %d x %d pixels\n", scene.camera.eye.x, scene.camera.eye.y,
-              scene.camera.eye.z, scene.film.width, scene.film.height);
-  std::printf("shapes     %zu\n", scene.shapes.size());
+  const Camera& camera = scene.camera;
+  std::printf("camera     pinhole at %s m, looks at %s m, %.6g degrees high\n", text_of(camera.eye).c_str(),
+              text_of(camera.look_at).c_str(), camera.vertical_fov);
+  std::printf("picture    %d x %d pixels, %s each\n", scene.film.width, scene.film.height,
+              counted(static_cast<size_t>(scene.render.samples), "sample").c_str());
+  std::printf("background %s W/(m2 sr)\n", text_of(scene.background).c_str());
+  std::printf("%s, %s\n", counted(scene.shapes.size(), "shape").c_str(),
+              counted(triangle_count(scene), "triangle").c_str());
   for (const Shape& shape : scene.shapes) {
-    std::printf("  %-16s %s", shape.name.c_str(), kind_of(shape));
-    if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry))
-      std::printf(", %zu triangles\n", mesh->triangles.size());
-    else
-      std::printf(", material %s\n", scene.materials[shape.material].name.c_str());
+    std::printf("  %-16s %s", shape.name.c_str(), std::visit(ShapeText{}, shape.geometry).c_str());
+    if (shape.material != none) std::printf(", material %s", scene.materials[shape.material].name.c_str());
+    std::printf("\n");
   }
-  std::printf("materials  %zu\n", scene.materials.size());
+  std::printf("%s\n", counted(scene.materials.size(), "material").c_str());
   for (const Material& material : scene.materials) {
     std::printf("  %-16s %s\n", material.name.c_str(), material.shader.c_str());
     for (const std::string& line : material.provenance) std::printf("    %s\n", line.c_str());
   }
-  std::printf("lights     %zu\n", scene.lights.size());
-  for (const Light& light : scene.lights) std::printf("  %-16s %s\n", light.name.c_str(), kind_of(light));
+  std::printf("%s\n", counted(scene.lights.size(), "light").c_str());
+  for (const Light& light : scene.lights)
+    std::printf("  %-16s %s\n", light.name.c_str(), std::visit(LightText{}, light.emitter).c_str());
   std::printf("media      %zu of 255\n", data.media.size() - 1);
-  std::printf("casters    %zu (photons are aimed at them)\n", data.casters.size());
+  if (features.caustics)
+    std::printf("photons    %llu, aimed at %s that refract or mirror\n",
+                static_cast<unsigned long long>(scene.photons.count), counted(data.casters.size(), "shape").c_str());
   std::printf("features   %s\n", features.names().c_str());
   std::printf("kernels   ");
   for (const std::string& stage : stages_for(features)) std::printf(" %s", stage.c_str());
@@ -61,9 +108,13 @@ void run_info(const SceneArguments& arguments) {
     std::printf(", tree %.3f MiB (built in %.2f s)", static_cast<double>(tree.statistics.bytes) / 0x1p20,
                 tree.statistics.seconds);
   }
-  if (features.caustics)
-    std::printf(", photon map up to %.1f MiB",
-                static_cast<double>(scene.photons.count) * (sizeof(float) * (8 + PHOTON_FIELDS)) / 0x1p20);
+  const double pixels = static_cast<double>(scene.film.width) * scene.film.height;
+  std::printf(", film %.3f MiB", pixels * FILM_PLANES * sizeof(float) / 0x1p20);
+  if (features.caustics) {
+    // Of one pass, unsorted and sorted.
+    const double photons = std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
+    std::printf(", photon map up to %.1f MiB", photons * (sizeof(float) * (8 + PHOTON_FIELDS)) / 0x1p20);
+  }
   std::printf("\n");
 }
 

@@ -1,11 +1,15 @@
 #include "render/render.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <future>
+#include <set>
 
 #include "commands/commands.hpp"
 #include "commands/report.hpp"
 #include "commands/scene_arguments.hpp"
+#include "commands/usage.hpp"
 #include "core/log.hpp"
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
@@ -14,11 +18,13 @@
 namespace vitrum {
 namespace {
 
+constexpr uint64_t most_threads = 1024;       // more than that PoCL may fail to start, without a word of why
+constexpr uint64_t largest_group = 1u << 16;  // a device that takes less gets the most that it takes
+
 struct RenderArguments {
   SceneArguments scene;
   std::vector<std::string> outputs, views;
-  unsigned threads = 0;
-  unsigned group_size = 32;
+  std::string threads = "0", group_size = "32";
   std::string device, report;
   KernelFiles kernels;
   bool quiet = false;
@@ -46,21 +52,53 @@ PictureLayer layer_of(const Film& film, View view) {
   return layer;
 }
 
+/// Throws Error for an output that cannot be written, or that another one would overwrite.
+void check_outputs(const RenderArguments& arguments) {
+  std::set<std::filesystem::path> files;
+  const auto check_alone = [&files](const std::string& output) {
+    if (!files.insert(std::filesystem::weakly_canonical(output)).second)
+      throw Error({output}, "this file is to be written twice", "give every picture and the report a name of its own");
+  };
+  for (const std::string& output : arguments.outputs) {
+    check_writable(output);
+    check_alone(output);
+  }
+  if (!arguments.report.empty()) {
+    check_whole_file(arguments.report);
+    check_alone(arguments.report);
+  }
+}
+
+/// The views in the order given. Throws Error for one that is none, or is there already.
+std::vector<View> views_of_names(const std::vector<std::string>& names) {
+  std::vector<View> views;
+  for (const std::string& name : names) {
+    const View view = view_of_name(name);
+    if (std::find(views.begin(), views.end(), view) != views.end())
+      throw Error({"--view " + name}, "this view is named twice", "name it once");
+    views.push_back(view);
+  }
+  return views;
+}
+
 void run_render(const RenderArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   set_quiet(arguments.quiet);
   RenderOptions options;
   options.kernels = arguments.kernels;
-  if (!arguments.views.empty()) options.views.clear();
-  for (const std::string& name : arguments.views) options.views.push_back(view_of_name(name));
-  for (const std::string& output : arguments.outputs) check_writable(output);
-  if (!arguments.report.empty()) check_whole_file(arguments.report);
+  if (!arguments.views.empty()) options.views = views_of_names(arguments.views);
+  const auto threads = static_cast<unsigned>(whole_number("--threads", arguments.threads, 0, most_threads));
+  const auto group_size = static_cast<unsigned>(whole_number("--group-size", arguments.group_size, 1, largest_group));
+  check_outputs(arguments);
+  if (!options.kernels.folder.empty() && !std::filesystem::is_directory(options.kernels.folder))
+    throw Error({"--kernels " + options.kernels.folder}, "there is no such folder",
+                "name the folder kernels/ of vitrum's sources");
 
   // The device wakes up while the scene is read, and the module for pictures loads beside both.
-  prepare_opencl(arguments.threads);
+  prepare_opencl(threads);
   preload_image_module();
-  auto waking = std::async(std::launch::async, [&arguments] {
-    return std::make_unique<Device>(arguments.device, arguments.group_size);
+  auto waking = std::async(std::launch::async, [&arguments, group_size] {
+    return std::make_unique<Device>(arguments.device, group_size);
   });
   const Scene scene = arguments.scene.load();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -101,8 +139,8 @@ void add_render_command(CLI::App& app) {
   const auto arguments = std::make_shared<RenderArguments>();
   arguments->scene.add_to(*command);
   command->add_option("-o,--output", arguments->outputs,
-                      "Picture to write; .exr is linear with all views as layers, .png and the like show the first view "
-                      "(repeatable)")
+                      "Picture to write (repeatable): .exr is linear with all views as layers;\n"
+                      ".png, .jpg, .tif, .bmp and .hdr show the first view")
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false);

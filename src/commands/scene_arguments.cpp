@@ -1,25 +1,35 @@
 #include "commands/scene_arguments.hpp"
 
+#include <limits>
+#include <map>
+
+#include "commands/usage.hpp"
 #include "core/error.hpp"
 #include "scene/scene_file.hpp"
 
 namespace vitrum {
 namespace {
 
-bool is_number(const std::string& text) {
-  return !text.empty() && text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos;
+/// The digits of a whole number, without zeros in front; what range it must have is the scene's business.
+std::string digits(const std::string& option, const std::string& text) {
+  return std::to_string(whole_number(option, text, 0, std::numeric_limits<int64_t>::max()));
 }
 
-std::string count_option(const std::string& option, const std::string& key, const std::string& value) {
-  if (!is_number(value))
-    throw Error({option + " " + value, 0, 0}, "this is no whole number", "write for example " + option + " 16");
-  return key + "=" + value;
+/// "[640,480]" of "640x480".
+std::string pixels(const std::string& size) {
+  const size_t x = size.find('x');
+  const auto is_number = [](const std::string& text) {
+    return !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (x == std::string::npos || !is_number(size.substr(0, x)) || !is_number(size.substr(x + 1)))
+    throw Error({"--size " + size}, "this is no size", "write width and height in pixels, as in --size 640x480");
+  return "[" + digits("--size", size.substr(0, x)) + "," + digits("--size", size.substr(x + 1)) + "]";
 }
 
 }  // namespace
 
 void SceneArguments::add_to(CLI::App& command) {
-  command.add_option("SCENE", scene, "Scene file (TOML; docs/scene-file.md)")->required();
+  command.add_option("SCENE", scene, "Scene file (TOML; docs/scene-file.md)")->required()->type_name("");
   command.add_option("--set", sets, "Set any key of the scene file: KEY=VALUE, as in render.reflectance=0.1 (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -31,20 +41,25 @@ void SceneArguments::add_to(CLI::App& command) {
 
 Scene SceneArguments::load() const {
   std::vector<std::string> overrides = sets;
-  if (!samples.empty()) overrides.push_back(count_option("--samples", "render.samples", samples));
-  if (photons == "0") {
-    overrides.push_back("render.caustics=false");
-  } else if (!photons.empty()) {
-    overrides.push_back(count_option("--photons", "photons.count", photons));
+  std::map<std::string, std::string> places;  // of what an option stands for: the option as it was written
+  const auto set = [&](const std::string& override_text, const std::string& option) {
+    overrides.push_back(override_text);
+    places["--set " + override_text] = option;
+  };
+  if (samples) set("render.samples=" + digits("--samples", *samples), "--samples " + *samples);
+  if (photons) {
+    const std::string count = digits("--photons", *photons);
+    set(count == "0" ? "render.caustics=false" : "photons.count=" + count, "--photons " + *photons);
   }
-  if (!seed.empty()) overrides.push_back(count_option("--seed", "render.seed", seed));
-  if (!size.empty()) {
-    const size_t x = size.find('x');
-    if (x == std::string::npos || !is_number(size.substr(0, x)) || !is_number(size.substr(x + 1)))
-      throw Error({"--size " + size, 0, 0}, "this is no size", "write width and height in pixels, as in --size 640x480");
-    overrides.push_back("film.size=[" + size.substr(0, x) + "," + size.substr(x + 1) + "]");
+  if (seed) set("render.seed=" + digits("--seed", *seed), "--seed " + *seed);
+  if (size) set("film.size=" + pixels(*size), "--size " + *size);
+  try {
+    return load_scene(scene, overrides);
+  } catch (const Error& error) {
+    const auto place = places.find(error.where().file);
+    if (place == places.end()) throw;
+    throw Error({place->second}, error.problem(), error.mend());
   }
-  return load_scene(scene, overrides);
 }
 
 }  // namespace vitrum

@@ -2,6 +2,7 @@
 // The arguments that say which scene and how it differs from its file; `render` and `info` share them.
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace vitrum {
 struct SceneArguments {
   std::string scene;
   std::vector<std::string> sets;      ///< --set KEY=VALUE
-  std::string samples, photons, seed, size;
+  std::optional<std::string> samples, photons, seed, size;
 
   /// Adds SCENE, --set, --samples, --photons, --seed and --size to a command.
   void add_to(CLI::App& command);

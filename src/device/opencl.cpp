@@ -120,8 +120,13 @@ Device::Device(const std::string& choice, unsigned group_size) : group_size_(gro
     if (fits && (info.usable || !choice.empty())) chosen = static_cast<int>(i);
   }
   if (chosen < 0 && choice.empty()) chosen = 0;
-  if (chosen < 0)
-    throw Error({}, "no OpenCL device is called '" + choice + "'", "choose one that `vitrum devices` lists");
+  if (chosen < 0) {
+    std::string names;
+    for (size_t i = 0; i < devices.size(); ++i)
+      names += (i ? ", " : "") + std::to_string(i) + " (" + describe(devices[i]).name + ")";
+    throw Error({"--device " + choice}, "there is no such device",
+                "choose by number, or by a piece of the name, among " + names);
+  }
   device_ = devices[static_cast<size_t>(chosen)];
   info_ = describe(device_);
   if (!info_.usable)

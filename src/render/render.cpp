@@ -55,7 +55,9 @@ const char* view_name(View view) {
 View view_of_name(const std::string& name) {
   for (View view : all_views)
     if (name == view_name(view)) return view;
-  throw Error({}, "there is no view '" + name + "'", "choose beauty, photons, caustics, albedo, normal or depth");
+  std::vector<std::string> names;
+  for (View view : all_views) names.push_back(view_name(view));
+  throw Error({"--view " + name}, "there is no such view", suggestion(name, names, "views"));
 }
 
 RenderResult render(const Scene& scene, Device& device, const RenderOptions& options) {

@@ -184,7 +184,9 @@ Shader Interpreter::chosen_shader() {
     return transparent;
   }
   if (said_.illum) {
-    const std::string number = ' ' + std::to_string(said_.illum->value);
+    std::string number = ' ' + std::to_string(said_.illum->value);
+    // The one number with two meanings.
+    if (said_.illum->value == 2) number += is_worksheet() ? " by mtl = worksheet" : " by mtl = common";
     took(std::string("shader ") + shader.name, "illum", said_.illum->where, number.c_str());
   } else {
     material_.provenance.push_back(std::string("shader ") + shader.name + " (default: no illum)");

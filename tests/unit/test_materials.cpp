@@ -293,7 +293,7 @@ TEST_CASE("values out of range") {
 
 TEST_CASE("the report tells of the default scene's glass with illum 12") {
   MtlMaterial glass = read_mtl(VITRUM_SOURCE_DIR "/models/default_scene/default_scene.mtl").at(1);
-  CHECK(reports(read(glass, worksheet), "shader glossy (illum 2, default_scene.mtl:17)"));
+  CHECK(reports(read(glass, worksheet), "shader glossy (illum 2 by mtl = worksheet, default_scene.mtl:17)"));
   MtlMaterial over;
   over.name = "glass";
   over.where = {"scene.toml", 30, 1};
