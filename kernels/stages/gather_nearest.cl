@@ -140,7 +140,7 @@ FUNCTION float nearest_radius2(const PhotonTreeData* tree, __global const float*
   if (count < k) return limit;
   keep_nearest(candidates, count, k, limit);
   float radius2 = 0.0f;
-  for (uint i = 0; i < k; ++i) radius2 = larger(radius2, candidates[i]);
+  for (uint i = 0; i < k; ++i) radius2 = max(radius2, candidates[i]);
   return radius2;
 }
 // [/nearest]
@@ -191,5 +191,5 @@ __kernel void gather_nearest(const uint count, const uint stride, const uint k, 
   const float radius2 = nearest_radius2(&tree, nodes, leaves, p, n, k, max_radius * max_radius);
   const Sums sums = power_within(&tree, nodes, leaves, p, n, radius2);
   // Where k photons lie in one place, their irradiance is that of a circle of 0.1 um.
-  add_caustic(&sums, 0.318309886183790672f / larger(radius2, 1e-14f), diffuse, shares, stride, i);
+  add_caustic(&sums, 0.318309886183790672f / max(radius2, 1e-14f), diffuse, shares, stride, i);
 }
