@@ -7,6 +7,10 @@
 // The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
 // far photons cost nothing but a failed test of distance. Of the 3 x 3 x 3 cells around a place each is visited once,
 // also where the grid has fewer along an axis. Cells along x are neighbours in memory; there are at least 4 of them.
+//
+// For the k nearest, photons are in a tree instead, eight in a leaf and eight children at a node: field f of photon j of
+// leaf i at [(i * PHOTON_FIELDS + f) * 8 + j]. The tree is left-balanced (Jensen 2001, section 4.5.2), so that it needs
+// no pointers: the children of node i of a level are 8 i to 8 i + 7 of the level below, level 0 the leaves.
 #ifndef VITRUM_PHOTON_MAP_H
 #define VITRUM_PHOTON_MAP_H
 
@@ -24,6 +28,25 @@ typedef struct {
   float inverse_cell;
   uint log2_x, log2_y, log2_z;
 } GridData;
+
+// A node: for each child, the box around its photons and that around their packed directions; row r of child j at
+// [(node * PHOTON_NODE_ROWS + r) * 8 + j]. The box of a child that is not there is empty: low above high.
+#define PHOTON_NODE_LOW 0            // x, y, z [m]
+#define PHOTON_NODE_HIGH 3
+#define PHOTON_NODE_LOW_DIRECTION 6  // x, y, z, in steps of packed_direction
+#define PHOTON_NODE_HIGH_DIRECTION 9
+#define PHOTON_NODE_ROWS 12
+#define PHOTON_TREE_LEVELS 10        // enough for 2^30 photons
+#define PHOTON_OFF_TREE 1e30f        // coordinates of the photons that fill up the last leaf
+
+// Level `top` is the root alone; the nodes of level l > 0 start at first_node[l].
+typedef struct {
+  uint top;
+  uint first_node[PHOTON_TREE_LEVELS];
+} PhotonTreeData;
+
+// The largest k of the k nearest.
+#define MAX_NEAREST 64
 
 #ifdef __OPENCL_VERSION__
 
@@ -53,6 +76,20 @@ FUNCTION uint packed_direction(float x, float y, float z) {
   const uint b = (uint)((int)rint(clamp(y, -1.0f, 1.0f) * 511.0f) & 1023);
   const uint c = (uint)((int)rint(clamp(z, -1.0f, 1.0f) * 511.0f) & 1023);
   return a | b << 10 | c << 20;
+}
+
+// A photon counts for a surface if it came to the surface's front, and lies within this share of the radius off its
+// plane: on curved surfaces and in corners, the rest lies on something else.
+#define PLANE_SHARE 0.25f
+
+FUNCTION int8 came_to_front(int8 packed, float3 n) {
+  const float8 along = convert_float8(packed << 22 >> 22) * n.x + convert_float8(packed << 12 >> 22) * n.y +
+                       convert_float8(packed << 2 >> 22) * n.z;
+  return along < 0.0f;
+}
+
+FUNCTION float8 distance_off_plane(float8 dx, float8 dy, float8 dz, float3 n) {
+  return fabs(dx * n.x + dy * n.y + dz * n.z);
 }
 
 #endif

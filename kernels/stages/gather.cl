@@ -1,17 +1,7 @@
 // Stage gather: the caustic's irradiance on the surfaces that scatter, from the photons within a fixed radius.
 // Reads: surfaces, scatter [0, count), the sorted photon map. Adds to: shares (beauty and caustics).
 // The SIMD is inside the ray: eight photons at a time.
-#include "queue.h"
-#include "film.h"
-#include "photon_map.h"
-
-// A photon counts for a surface if it came to the surface's front, and lies within this share of the radius off its
-// plane: on curved surfaces and in corners, the rest lies on something else.
-#define PLANE_SHARE 0.25f
-
-typedef struct {
-  float8 red, green, blue;
-} Sums;
+#include "gather.h"
 
 // [gather]
 // Adds the photons [first, last): Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the irradiance
@@ -28,10 +18,7 @@ FUNCTION void add_photons(__global const float* map, uint stride, uint first, ui
     int8 counts = (nearness > 0.0f) & (lane < last);
     if (!any(counts)) continue;
     const int8 packed = as_int8(vload8(0, map + PHOTON_DIRECTION * stride + i));
-    const float8 along = convert_float8(packed << 22 >> 22) * n.x + convert_float8(packed << 12 >> 22) * n.y +
-                         convert_float8(packed << 2 >> 22) * n.z;
-    const float8 off_plane = fabs(dx * n.x + dy * n.y + dz * n.z);
-    counts &= (along < 0.0f) & (off_plane <= max_off_plane);
+    counts &= came_to_front(packed, n) & (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
     const float8 weight = counts ? nearness : 0.0f;
     // What lies behind the last photon may be no number, which a weight of 0 would not take out.
     const float8 red = vload8(0, map + (PHOTON_POWER + 0) * stride + i);
@@ -44,10 +31,6 @@ FUNCTION void add_photons(__global const float* map, uint stride, uint first, ui
 }
 // [/gather]
 
-FUNCTION float sum8(float8 v) {
-  return ((v.s0 + v.s4) + (v.s1 + v.s5)) + ((v.s2 + v.s6) + (v.s3 + v.s7));
-}
-
 // `low`, `high`: corners of a box around all photons.
 __kernel void gather(const uint count, const uint stride, const GridData grid, const float radius, const float4 low,
                      const float4 high, const uint map_stride, __global const uint* first_of_cell,
@@ -55,18 +38,13 @@ __kernel void gather(const uint count, const uint stride, const GridData grid, c
                      __global float* shares) {
   const uint i = get_global_id(0);
   if (i >= count) return;
-  const float red = scatter[(SCATTER_DIFFUSE + 0) * stride + i];
-  const float green = scatter[(SCATTER_DIFFUSE + 1) * stride + i];
-  const float blue = scatter[(SCATTER_DIFFUSE + 2) * stride + i];
-  if (red <= 0.0f && green <= 0.0f && blue <= 0.0f) return;
-  const float3 p = (float3)(surfaces[(SURFACE_POSITION + 0) * stride + i],
-                            surfaces[(SURFACE_POSITION + 1) * stride + i],
-                            surfaces[(SURFACE_POSITION + 2) * stride + i]);
+  const float3 diffuse = receiver_diffuse(scatter, stride, i);
+  if (is_black(diffuse)) return;
+  const float3 p = triple_at(surfaces, SURFACE_POSITION, stride, i);
   if (p.x < low.x - radius || p.y < low.y - radius || p.z < low.z - radius || p.x > high.x + radius ||
       p.y > high.y + radius || p.z > high.z + radius)
     return;
-  const float3 n = (float3)(scatter[(SCATTER_NORMAL + 0) * stride + i], scatter[(SCATTER_NORMAL + 1) * stride + i],
-                            scatter[(SCATTER_NORMAL + 2) * stride + i]);
+  const float3 n = triple_at(scatter, SCATTER_NORMAL, stride, i);
 
   const float inverse_r2 = 1.0f / (radius * radius);
   const int x = cell_coordinate(p.x, grid.inverse_cell);
@@ -74,10 +52,7 @@ __kernel void gather(const uint count, const uint stride, const GridData grid, c
   const int z = cell_coordinate(p.z, grid.inverse_cell);
   const uint size_x = 1u << grid.log2_x;
   const uint x_first = (uint)(x - 1) & (size_x - 1u);
-  Sums sums;
-  sums.red = 0.0f;
-  sums.green = 0.0f;
-  sums.blue = 0.0f;
+  Sums sums = no_sums();
   for (int dz = first_neighbour(grid.log2_z); dz <= last_neighbour(grid.log2_z); ++dz) {
     for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
       __global const uint* row = first_of_cell + row_of_cells(grid, y + dy, z + dz);
@@ -88,13 +63,5 @@ __kernel void gather(const uint count, const uint stride, const GridData grid, c
         add_photons(map, map_stride, row[0], row[x_first + 3u - size_x], p, n, inverse_r2, PLANE_SHARE * radius, &sums);
     }
   }
-  // Irradiance, and rho_d / pi of it as radiance.
-  const float scale = 2.0f * 0.318309886183790672f * inverse_r2 * 0.318309886183790672f;
-  const float3 radiance = (float3)(red * sum8(sums.red), green * sum8(sums.green), blue * sum8(sums.blue)) * scale;
-  shares[(SHARE_BEAUTY + 0) * stride + i] += radiance.x;
-  shares[(SHARE_BEAUTY + 1) * stride + i] += radiance.y;
-  shares[(SHARE_BEAUTY + 2) * stride + i] += radiance.z;
-  shares[(SHARE_CAUSTICS + 0) * stride + i] += radiance.x;
-  shares[(SHARE_CAUSTICS + 1) * stride + i] += radiance.y;
-  shares[(SHARE_CAUSTICS + 2) * stride + i] += radiance.z;
+  add_caustic(&sums, 2.0f * 0.318309886183790672f * inverse_r2, diffuse, shares, stride, i);
 }

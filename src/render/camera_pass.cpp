@@ -59,13 +59,28 @@ struct CameraPass::State {
     if (features.mesh) trace_mesh = programs.kernel("trace", "trace_mesh");
     shade = programs.kernel("camera_shade", "camera_shade");
     if (features.lights) direct = programs.kernel("direct_light", "direct_light");
-    if (features.caustics) gather = programs.kernel("gather", "gather");
+    const char* gather_name = features.nearest_photons ? "gather_nearest" : "gather";
+    if (features.caustics) gather = programs.kernel(gather_name, gather_name);
     count_children = programs.kernel("camera_queue", "camera_count");
     scan = programs.kernel("camera_queue", "scan_blocks");
     append = programs.kernel("camera_queue", "camera_append");
     film_add = programs.kernel("film", "film_add");
     film_add_runs = programs.kernel("film", "film_add_runs");
     film_add_first_hits = programs.kernel("film", "film_add_first_hits");
+  }
+
+  /// Adds the caustic on the surfaces that `count` rays meet.
+  void gather_photons(uint32_t count) {
+    if (context.features.nearest_photons) {
+      set_arguments(gather, 0, count, queue_stride, static_cast<uint32_t>(context.scene.photons.nearest), map->radius,
+                    map->tree, map->nodes, map->leaves, surfaces, scatter, shares);
+    } else {
+      const cl_float4 low = {{map->low[0], map->low[1], map->low[2], 0}};
+      const cl_float4 high = {{map->high[0], map->high[1], map->high[2], 0}};
+      set_arguments(gather, 0, count, queue_stride, map->grid, map->radius, low, high, map->stride, map->first_of_cell,
+                    map->sorted, surfaces, scatter, shares);
+    }
+    context.device.launch("gather", gather, count);
   }
 
   /// Traces and shades `count` rays of a generation; their children join the next one, which has room for them.
@@ -90,13 +105,7 @@ struct CameraPass::State {
         device.launch("camera", direct, context.packets(count));
         rays_traced.shadow += count;
       }
-    if (map != nullptr && map->count > 0) {
-      const cl_float4 low = {{map->low[0], map->low[1], map->low[2], 0}};
-      const cl_float4 high = {{map->high[0], map->high[1], map->high[2], 0}};
-      set_arguments(gather, 0, count, queue_stride, map->grid, map->radius, low, high, map->stride, map->first_of_cell,
-                    map->sorted, surfaces, scatter, shares);
-      device.launch("gather", gather, count);
-    }
+    if (map != nullptr && map->count > 0) gather_photons(count);
     if (depth == 0) {
       rays_traced.camera += count;
       set_arguments(film_add, 0, count, queue_stride, first_pixel, film_stride, shares, film);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "render/photon_grid.hpp"
+#include "render/photon_tree.hpp"
 #include "render/sequences.hpp"
 
 namespace vitrum {
@@ -80,9 +81,10 @@ struct PhotonPass::State {
   double watts_per_unit = 0.0;
   PhotonMap map;
   PhotonBalance balance;
-  std::unique_ptr<PhotonGrid> grid;
+  std::unique_ptr<PhotonGrid> grid;  // unless the k nearest are gathered
 
-  State(const KernelContext& c, uint64_t largest) : context(c), capacity(largest), grid(new PhotonGrid(c)) {
+  State(const KernelContext& c, uint64_t largest) : context(c), capacity(largest) {
+    if (!context.features.nearest_photons) grid = std::make_unique<PhotonGrid>(context);
     Device& device = context.device;
     const SceneData& data = context.data;
     std::vector<kernel::CasterData> bounded = data.casters;
@@ -255,7 +257,10 @@ void PhotonPass::run(uint32_t replicate, uint64_t before, uint64_t count,
   s.balance.not_aimed -= watts(OUTCOME_ALIVE);
   s.balance.photons_shot += emitted;
   s.balance.photons_stored += s.map.count;
-  s.grid->sort(s.map);
+  if (s.grid)
+    s.grid->sort(s.map);
+  else
+    fill_photon_tree(device, s.map, s.context.scene.photons.max_radius);
 }
 
 const PhotonMap& PhotonPass::map() const { return state_->map; }

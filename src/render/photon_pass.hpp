@@ -1,5 +1,5 @@
 #pragma once
-// One pass of photons: emitted towards what refracts or mirrors, traced, stored, sorted into a grid.
+// One pass of photons: emitted towards what refracts or mirrors, traced, stored, sorted into a grid or a tree.
 
 #include <array>
 #include <functional>
@@ -23,7 +23,7 @@ struct PhotonBalance {
   uint64_t surfaces_met = 0;    ///< rays traced
 };
 
-/// Photons in the order in which they were stored, and sorted.
+/// Photons in the order in which they were stored, and sorted: for the k nearest into the tree, else into the grid.
 struct PhotonMap {
   uint32_t count = 0;
   Buffer<cl_float8> photons;    ///< kernels/photon_map.h: unsorted
@@ -31,8 +31,10 @@ struct PhotonMap {
   uint32_t stride = 0;
   Buffer<uint32_t> first_of_cell;
   kernel::GridData grid{};
-  float radius = 0.0f;          ///< of the estimate [m]
+  float radius = 0.0f;          ///< of the estimate [m]; for the k nearest, the greatest
   std::array<float, 4> low{}, high{};  ///< box around all photons [m]
+  kernel::PhotonTreeData tree{};
+  Buffer<float> leaves, nodes;
 };
 
 /// Traces photons pass by pass; keeps its buffers between passes.

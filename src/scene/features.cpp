@@ -96,6 +96,7 @@ Features scene_features(const Scene& scene) {
   for (const Light& light : scene.lights) f.light_kinds |= 1u << light.emitter.index();
   f.lights = scene.render.lights && !scene.lights.empty();
   f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;
+  f.nearest_photons = f.caustics && scene.photons.estimate == PhotonEstimate::nearest;
   if (f.dielectric) f.constant_reflectance = scene.render.constant_reflectance;
   return f;
 }
@@ -128,6 +129,7 @@ std::string Features::names() const {
   add(constant_reflectance.has_value(), "constant reflectance");
   add(lights, "direct light");
   add(caustics, "caustics");
+  add(nearest_photons, "nearest photons");
   return text.empty() ? "none" : text;
 }
 
@@ -135,8 +137,11 @@ std::vector<std::string> stages_for(const Features& f) {
   std::vector<std::string> stages = {"camera_generate", "trace", "camera_shade", "camera_queue", "film"};
   if (f.lights) stages.push_back("direct_light");
   if (f.caustics)
-    for (const char* stage : {"photon_emit", "photon_interact", "photon_store", "photon_sort", "gather"})
-      stages.push_back(stage);
+    for (const char* stage : {"photon_emit", "photon_interact", "photon_store"}) stages.push_back(stage);
+  if (f.nearest_photons)
+    stages.push_back("gather_nearest");
+  else if (f.caustics)
+    for (const char* stage : {"photon_sort", "gather"}) stages.push_back(stage);
   return stages;
 }
 

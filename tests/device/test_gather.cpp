@@ -1,0 +1,232 @@
+// Both ways to gather photons against every photon looked at, in double.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+
+#include "device/gatherer.hpp"
+
+using namespace vitrum;
+using glm::dvec3;
+using glm::vec3;
+
+namespace {
+
+struct Random {
+  std::mt19937 bits{7};
+  float between(float low, float high) { return std::uniform_real_distribution<float>(low, high)(bits); }
+  vec3 in_box(vec3 low, vec3 high) {
+    return {between(low.x, high.x), between(low.y, high.y), between(low.z, high.z)};
+  }
+  vec3 direction() {
+    for (;;) {
+      const vec3 v = in_box(vec3(-1), vec3(1));
+      if (glm::length(v) > 0.1f && glm::length(v) < 1.0f) return glm::normalize(v);
+    }
+  }
+};
+
+/// A photon that came to a query's front, as the query sees it.
+struct Seen {
+  double distance2, off_plane;
+  dvec3 power;
+  /// The square of the least radius that takes it in.
+  double reach2() const { return std::max(distance2, 16.0 * off_plane * off_plane); }
+};
+
+/// What brute force says; `in_doubt` where rounding may decide on a photon.
+struct Answer {
+  dvec3 radiance{0};
+  bool in_doubt = false;
+};
+
+bool near(double a, double b) { return a != b && std::abs(a - b) < 1e-5 * std::max(std::abs(a), std::abs(b)); }
+
+std::vector<Seen> seen_by(const Query& query, const std::vector<cl_float8>& photons, bool* in_doubt) {
+  std::vector<Seen> seen;
+  const dvec3 n(query.normal);
+  for (const cl_float8& p : photons) {
+    const int32_t bits = std::bit_cast<int32_t>(p.s[3]);
+    const double along = glm::dot(dvec3(bits << 22 >> 22, bits << 12 >> 22, bits << 2 >> 22), n);
+    if (along != 0.0 && std::abs(along) < 1e-4) *in_doubt = true;
+    if (along >= 0.0) continue;
+    const dvec3 d = dvec3(vec3(p.s[0], p.s[1], p.s[2])) - dvec3(query.position);
+    seen.push_back({glm::dot(d, d), std::abs(glm::dot(d, n)), vec3(p.s[4], p.s[5], p.s[6])});
+  }
+  return seen;
+}
+
+Answer brute_within(const Query& query, const std::vector<cl_float8>& photons, double radius) {
+  Answer answer;
+  dvec3 sum(0);
+  for (const Seen& s : seen_by(query, photons, &answer.in_doubt)) {
+    if (s.distance2 >= radius * radius) continue;
+    answer.in_doubt |= near(s.off_plane, 0.25 * radius);
+    if (s.off_plane <= 0.25 * radius) sum += (1.0 - s.distance2 / (radius * radius)) * s.power;
+  }
+  answer.radiance = 2.0 * sum / (std::numbers::pi * radius * radius) * dvec3(query.diffuse) / std::numbers::pi;
+  return answer;
+}
+
+Answer brute_nearest(const Query& query, const std::vector<cl_float8>& photons, size_t k, double max_radius) {
+  Answer answer;
+  std::vector<Seen> seen = seen_by(query, photons, &answer.in_doubt);
+  double radius2 = max_radius * max_radius;
+  if (seen.size() >= k) {
+    const auto kth = seen.begin() + static_cast<std::ptrdiff_t>(k - 1);
+    std::nth_element(seen.begin(), kth, seen.end(),
+                     [](const Seen& a, const Seen& b) { return a.reach2() < b.reach2(); });
+    radius2 = std::min(radius2, kth->reach2());
+  }
+  dvec3 sum(0);
+  for (const Seen& s : seen) {
+    answer.in_doubt |= near(s.reach2(), radius2);
+    if (s.reach2() <= radius2) sum += s.power;
+  }
+  answer.radiance = sum / (std::numbers::pi * std::max(radius2, 1e-14)) * dvec3(query.diffuse) / std::numbers::pi;
+  return answer;
+}
+
+/// Checks the answers but those in doubt, at most one in fifty.
+template <typename Brute>
+void check(const std::vector<vec3>& radiance, const std::vector<Query>& queries, Brute brute) {
+  size_t wrong = 0, in_doubt = 0;
+  double lit = 0;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Answer answer = brute(queries[i]);
+    lit += glm::length(answer.radiance);
+    if (answer.in_doubt) {
+      ++in_doubt;
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(static_cast<double>(radiance[i][axis]) - answer.radiance[axis]) <= 2e-5 * answer.radiance[axis])) {
+        if (++wrong < 5)
+          MESSAGE("query " << i << ": " << radiance[i][axis] << " instead of " << answer.radiance[axis]);
+      }
+  }
+  CHECK(wrong == 0);
+  CHECK(in_doubt <= queries.size() / 50);
+  CHECK(lit > 0.0);
+}
+
+/// A caustic on a lawn, photons on other surfaces, and photons that wander everywhere.
+std::vector<cl_float8> many_photons(Random& random) {
+  std::vector<cl_float8> photons;
+  const auto add = [&](vec3 p, vec3 direction) {
+    photons.push_back(photon(p, direction, random.in_box(vec3(0.1f), vec3(1))));
+  };
+  for (int i = 0; i < 2000; ++i) {
+    const float r = random.between(0, 1) * random.between(0, 1), phi = random.between(0, 6.2831853f);
+    add({0.3f + r * std::cos(phi), 0.0f, r * std::sin(phi)}, glm::normalize(vec3(0.3f, -1, 0.2f)));
+  }
+  for (int i = 0; i < 1000; ++i)
+    add({1.0f, random.between(0, 1), random.between(-1, 1)}, glm::normalize(vec3(1, -0.5f, random.between(-1, 1))));
+  for (int i = 0; i < 1000; ++i) add(random.in_box(vec3(-2, -1, -2), vec3(2, 1, 2)), random.direction());
+  for (int i = 0; i < 200; ++i) add(random.in_box(vec3(90, 0, -3), vec3(91, 0, -2)), {0, -1, 0});
+  return photons;
+}
+
+std::vector<Query> many_queries(Random& random) {
+  std::vector<Query> queries;
+  const auto add = [&](vec3 p, vec3 n) { queries.push_back({p, n, random.in_box(vec3(0.1f), vec3(1))}); };
+  for (int i = 0; i < 200; ++i) add(random.in_box(vec3(-1, 0, -1), vec3(2, 0, 1)), {0, 1, 0});
+  for (int i = 0; i < 100; ++i) add(random.in_box(vec3(1, 0, -1), vec3(1, 1, 1)), {-1, 0, 0});
+  for (int i = 0; i < 200; ++i) add(random.in_box(vec3(-2, -1, -2), vec3(2, 1, 2)), random.direction());
+  for (int i = 0; i < 100; ++i) add(random.in_box(vec3(89, 0, -4), vec3(92, 0, -1)), {0, 1, 0});
+  for (int i = 0; i < 20; ++i) add(random.in_box(vec3(1e4f), vec3(2e4f)), {0, 1, 0});
+  queries.push_back({{0.3f, 0, 0}, {0, 1, 0}, vec3(0)});
+  return queries;
+}
+
+Gatherer& shared_gatherer() {
+  static Gatherer gatherer(32);
+  return gatherer;
+}
+
+const std::vector<Query> one_query{{vec3(0), vec3(0, 1, 0), vec3(0.5f)}};
+
+}  // namespace
+
+TEST_CASE("photons within a fixed radius are those of brute force") {
+  Random random;
+  const std::vector<cl_float8> photons = many_photons(random);
+  const std::vector<Query> queries = many_queries(random);
+  Gatherer& gatherer = shared_gatherer();
+  for (float radius : {0.01f, 0.1f, 0.5f}) {
+    CAPTURE(radius);
+    check(gatherer.within(photons, queries, radius), queries,
+          [&](const Query& query) { return brute_within(query, photons, static_cast<double>(radius)); });
+  }
+}
+
+TEST_CASE("the k nearest photons are those of brute force") {
+  Random random;
+  const std::vector<cl_float8> photons = many_photons(random);
+  const std::vector<Query> queries = many_queries(random);
+  Gatherer& gatherer = shared_gatherer();
+  for (uint32_t k : {1u, 50u, 64u})
+    for (float max_radius : {0.05f, 1.0f, 300.0f}) {
+      CAPTURE(k);
+      CAPTURE(max_radius);
+      check(gatherer.nearest(photons, queries, k, max_radius), queries,
+            [&](const Query& query) { return brute_nearest(query, photons, k, static_cast<double>(max_radius)); });
+    }
+}
+
+TEST_CASE("trees of few photons, and fewer photons than k") {
+  Random random;
+  const std::vector<cl_float8> all = many_photons(random);
+  const std::vector<Query> queries = many_queries(random);
+  Gatherer& gatherer = shared_gatherer();
+  for (size_t count : {1, 2, 7, 8, 9, 64, 65, 513}) {
+    CAPTURE(count);
+    const std::vector<cl_float8> photons(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+    check(gatherer.nearest(photons, queries, 8, 2.0f), queries,
+          [&](const Query& query) { return brute_nearest(query, photons, 8, 2.0); });
+  }
+}
+
+TEST_CASE("photons all in one place") {
+  Gatherer& gatherer = shared_gatherer();
+  const std::vector<cl_float8> photons(1000, photon({0.25f, 0, 0}, {0, -1, 0}, vec3(1, 2, 3)));
+  const std::vector<Query> queries{one_query[0], {{0.25f, 0, 0}, {0, 1, 0}, vec3(1)}, {{9, 0, 0}, {0, 1, 0}, vec3(1)}};
+  check(gatherer.nearest(photons, queries, 50, 1.0f), queries,
+        [&](const Query& query) { return brute_nearest(query, photons, 50, 1.0); });
+  check(gatherer.within(photons, queries, 0.5f), queries,
+        [&](const Query& query) { return brute_within(query, photons, 0.5); });
+}
+
+TEST_CASE("photons exactly at the border") {
+  Gatherer& gatherer = shared_gatherer();
+  std::vector<cl_float8> photons;
+  for (vec3 p : {vec3(0.25f, 0, 0), vec3(0, 0, 0.5f), vec3(-0.5f, 0, 0), vec3(0, 0.125f, 0), vec3(0, -0.125f, 0.25f),
+                 vec3(0, 0, -0.75f), vec3(0, 0.15625f, 0)})
+    photons.push_back(photon(p, {0, -1, 0}, vec3(1)));
+  // Within .5: the photon at .25, two at .5, two at .125 off the plane.
+  const auto irradiance = [&](uint32_t k, float max_radius) {
+    return static_cast<double>(gatherer.nearest(photons, one_query, k, max_radius)[0].x) / 0.5 * std::numbers::pi;
+  };
+  const auto circle = [](double radius) { return std::numbers::pi * radius * radius; };
+  CHECK(irradiance(1, 1.0f) == doctest::Approx(1 / circle(0.25)).epsilon(1e-6));
+  CHECK(irradiance(5, 1.0f) == doctest::Approx(5 / circle(0.5)).epsilon(1e-6));
+  CHECK(irradiance(2, 1.0f) == doctest::Approx(5 / circle(0.5)).epsilon(1e-6));  // equally near
+  CHECK(irradiance(64, 0.5f) == doctest::Approx(5 / circle(0.5)).epsilon(1e-6));
+  CHECK(irradiance(6, 1.0f) == doctest::Approx(6 / circle(0.625)).epsilon(1e-6));
+  CHECK(irradiance(64, 2.0f) == doctest::Approx(7 / circle(2)).epsilon(1e-6));
+  CHECK(irradiance(64, 0.125f) == 0.0);
+
+  const double within = static_cast<double>(gatherer.within(photons, one_query, 0.5f)[0].x) / 0.5 * std::numbers::pi;
+  const double weights = (1 - 0.25) + (1 - 0.0625) + (1 - (0.0625 + 0.015625) / 0.25);
+  CHECK(within == doctest::Approx(2 * weights / circle(0.5)).epsilon(1e-6));
+}
+
+TEST_CASE("gathering does not depend on the size of groups") {
+  Random random;
+  const std::vector<cl_float8> photons = many_photons(random);
+  const std::vector<Query> queries = many_queries(random);
+  Gatherer small(4), large(128);
+  CHECK(small.within(photons, queries, 0.1f) == large.within(photons, queries, 0.1f));
+  CHECK(small.nearest(photons, queries, 50, 1.0f) == large.nearest(photons, queries, 50, 1.0f));
+}
