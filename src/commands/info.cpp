@@ -94,7 +94,7 @@ void run_info(const SceneArguments& arguments) {
     std::printf("  %-16s %s\n", light.name.c_str(), std::visit(LightText{}, light.emitter).c_str());
   std::printf("media      %zu of 255\n", data.media.size() - 1);
   if (features.caustics)
-    std::printf("photons    %llu, aimed at %s that refract or mirror\n",
+    std::printf("photons    %llu, aimed at what refracts or mirrors: %s\n",
                 static_cast<unsigned long long>(scene.photons.count), counted(data.casters.size(), "shape").c_str());
   std::printf("features   %s\n", features.names().c_str());
   std::printf("kernels   ");
