@@ -61,9 +61,12 @@ void run_info(const SceneArguments& arguments) {
     std::printf(", tree %.3f MiB (built in %.2f s)", static_cast<double>(tree.statistics.bytes) / 0x1p20,
                 tree.statistics.seconds);
   }
-  if (features.caustics)
+  if (features.caustics) {
+    // As stored, sorted, and a node to seven leaves or nodes, of eight photons at least.
+    const double floats = 8 + PHOTON_FIELDS + (features.nearest_photons ? PHOTON_NODE_ROWS / 7.0 : 0.0);
     std::printf(", photon map up to %.1f MiB",
-                static_cast<double>(scene.photons.count) * (sizeof(float) * (8 + PHOTON_FIELDS)) / 0x1p20);
+                static_cast<double>(scene.photons.count) * (sizeof(float) * floats) / 0x1p20);
+  }
   std::printf("\n");
 }
 
