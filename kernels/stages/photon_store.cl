@@ -5,7 +5,11 @@
 #include "outcome.h"
 #include "photon_map.h"
 
-#define SUMS (OUTCOMES * 3 + 3)
+// Sums of a block: power by outcome (3 each), power absorbed by media (3), photons by outcome, surfaces that those met.
+#define SUM_ABSORBED (OUTCOMES * 3)
+#define SUM_PHOTONS (SUM_ABSORBED + 3)
+#define SUM_SURFACES (SUM_PHOTONS + OUTCOMES)
+#define SUMS (SUM_SURFACES + 1)
 
 // Adds power as fixed point to one outcome's three sums. 32 bits hold a photon of 2^7 times the mean power.
 FUNCTION void add_power(const Vec3 power, const Mask which, const float per_unit, Ulong* sums) {
@@ -22,7 +26,7 @@ FUNCTION ulong sum_of_lanes(const Ulong sums) {
 
 // Counts what is stored and what is alive in each block, and adds up power by outcome: fixed point, `per_unit` units to
 // the watt, so that sums are exact and the order does not matter. The living are added up only where they have just
-// been shot. sums: [block][OUTCOMES * 3, then absorbed by media 3].
+// been shot. sums: [block][SUMS].
 __kernel void photon_tally(const uint count, const uint stride, const float per_unit, __global const float* rays,
                            __global const uint* outcomes, __global const float* absorbed, const uint absorbs,
                            const uint shot, __global uint* counts, __global ulong* sums) {
@@ -32,8 +36,8 @@ __kernel void photon_tally(const uint count, const uint stride, const float per_
   const uint last = min(first + BLOCK, count);
   Uint stored = 0;
   Uint alive = 0;
-  Ulong by_outcome[SUMS];
-  for (uint k = 0; k < SUMS; ++k) by_outcome[k] = 0;
+  Ulong sum[SUMS];
+  for (uint k = 0; k < SUMS; ++k) sum[k] = 0;
   for (uint i = first; i < last; i += WIDTH) {
     const Mask valid = lanes_below(i, last);
     const Uint outcome = valid ? LOAD(outcomes, i) : (Uint)OUTCOME_DONE;
@@ -41,8 +45,13 @@ __kernel void photon_tally(const uint count, const uint stride, const float per_
     stored += outcome == OUTCOME_STORED ? (Uint)1 : (Uint)0;
     alive += outcome == OUTCOME_ALIVE ? (Uint)1 : (Uint)0;
     for (uint k = shot ? OUTCOME_ALIVE : OUTCOME_ALIVE + 1; k < OUTCOMES; ++k)
-      if (ANY(outcome == k)) add_power(power, outcome == k, per_unit, by_outcome + 3 * k);
-    if (absorbs) add_power(load3(absorbed, 0, stride, i), valid, per_unit, by_outcome + 3 * OUTCOMES);
+      if (ANY(outcome == k)) {
+        add_power(power, outcome == k, per_unit, sum + 3 * k);
+        sum[SUM_PHOTONS + k] += TO_ULONG(outcome == k ? (Uint)1 : (Uint)0);
+      }
+    if (absorbs) add_power(load3(absorbed, 0, stride, i), valid, per_unit, sum + SUM_ABSORBED);
+    const Mask ended = (outcome != OUTCOME_ALIVE) & (outcome < OUTCOMES);
+    sum[SUM_SURFACES] += TO_ULONG(ended ? load_bits(rays, RAY_SLOT, stride, i) : (Uint)0);
   }
   uint n_stored = 0;
   uint n_alive = 0;
@@ -52,7 +61,7 @@ __kernel void photon_tally(const uint count, const uint stride, const float per_
   }
   counts[2 * block] = n_stored;
   counts[2 * block + 1] = n_alive;
-  for (uint k = 0; k < SUMS; ++k) sums[block * SUMS + k] = sum_of_lanes(by_outcome[k]);
+  for (uint k = 0; k < SUMS; ++k) sums[block * SUMS + k] = sum_of_lanes(sum[k]);
 }
 
 // Adds the blocks' sums up. One work-item for each of the SUMS.

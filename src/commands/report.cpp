@@ -69,7 +69,8 @@ std::string render_report(const Scene& scene, const Device& device, const Render
                   {"photon", result.photons.surfaces_met}};
   if (result.features.caustics) {
     const PhotonBalance& p = result.photons;
-    json["photons"] = {{"shot", p.photons_shot}, {"stored", p.photons_stored}};
+    json["photons"] = {{"shot", p.photons_shot},         {"stored", p.photons_stored}, {"absorbed", p.photons_absorbed},
+                       {"direct", p.photons_direct},     {"lost", p.photons_lost},     {"cut", p.photons_cut}};
     json["photon_power_watts"] = {{"shot", numbers(p.shot)},     {"stored", numbers(p.stored)},
                                   {"absorbed", numbers(p.absorbed)}, {"direct", numbers(p.direct)},
                                   {"lost", numbers(p.lost)},     {"cut", numbers(p.cut)},

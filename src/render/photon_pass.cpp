@@ -16,7 +16,10 @@ namespace {
 constexpr uint32_t chunk_size = 1u << 16;     // photons in flight: their state fits a CPU's caches
 const uint32_t chunk_stride = padded(chunk_size);
 const uint32_t survivors_stride = padded(2 * chunk_size);
-constexpr uint32_t sums_per_block = OUTCOMES * 3 + 3;
+// Sums of kernels/stages/photon_store.cl: power by outcome and absorbed by media (3 each), photons by outcome, surfaces.
+constexpr uint32_t sum_photons = OUTCOMES * 3 + 3;
+constexpr uint32_t sum_surfaces = sum_photons + OUTCOMES;
+constexpr uint32_t sums_per_block = sum_surfaces + 1;
 constexpr double units_per_photon = 0x1p25;   // of fixed-point power, for a photon of mean power
 
 Spectrum to_spectrum(const float* values) { return {values[0], values[1], values[2]}; }
@@ -169,7 +172,6 @@ struct PhotonPass::State {
       device.launch("trace", interact, context.packets(count));
       add_up(rays, count, false);
       const std::vector<uint32_t> n = device.read(totals, 0, 2);
-      balance.surfaces_met += alive;
       alive = n[1];
       // The living stay in their places while they are many; a few would leave most lanes idle.
       const uint32_t move = alive < count / 2;
@@ -256,7 +258,12 @@ void PhotonPass::run(uint32_t replicate, uint64_t before, uint64_t count,
     s.balance.not_aimed += total_power(s.context.data, light);
   s.balance.not_aimed -= watts(OUTCOME_ALIVE);
   s.balance.photons_shot += emitted;
-  s.balance.photons_stored += s.map.count;
+  s.balance.photons_stored += sums[sum_photons + OUTCOME_STORED];
+  s.balance.photons_absorbed += sums[sum_photons + OUTCOME_ABSORBED];
+  s.balance.photons_direct += sums[sum_photons + OUTCOME_DIRECT];
+  s.balance.photons_lost += sums[sum_photons + OUTCOME_LOST];
+  s.balance.photons_cut += sums[sum_photons + OUTCOME_CUT];
+  s.balance.surfaces_met += sums[sum_surfaces];
   if (s.grid)
     s.grid->sort(s.map);
   else

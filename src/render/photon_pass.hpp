@@ -19,7 +19,8 @@ struct PhotonBalance {
   Spectrum lost{0.0};           ///< left the scene
   Spectrum cut{0.0};            ///< by the depth limit
   Spectrum not_aimed{0.0};      ///< sent by the lights elsewhere; infinite where a light has no finite power
-  uint64_t photons_shot = 0, photons_stored = 0;
+  uint64_t photons_shot = 0, photons_stored = 0, photons_absorbed = 0, photons_direct = 0, photons_lost = 0;
+  uint64_t photons_cut = 0;
   uint64_t surfaces_met = 0;    ///< rays traced
 };
 

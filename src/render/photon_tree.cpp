@@ -14,6 +14,7 @@ namespace {
 constexpr size_t leaf_size = 8, node_size = 8;
 constexpr size_t leaf_floats = PHOTON_FIELDS * leaf_size, node_floats = PHOTON_NODE_ROWS * node_size;
 constexpr size_t leaves_worth_a_thread = 2048;
+static_assert(most_nearest_photons == MAX_NEAREST);
 constexpr int most_forks = 3;           // along each way down the tree
 
 /// What the sort moves about; the index breaks ties and finds the rest.

@@ -193,12 +193,15 @@ struct RenderSettings {
   Sampling sampling = Sampling::low_discrepancy;
 };
 
+/// The most photons that PhotonEstimate::nearest can search for.
+inline constexpr int most_nearest_photons = 64;
+
 struct PhotonSettings {
   uint64_t count = 1'000'000;               ///< emitted towards casters, all passes together
   Sampling sampling = Sampling::low_discrepancy;
   PhotonEstimate estimate = PhotonEstimate::automatic;
   double radius = 0.01;                     ///< for fixed_radius [m]
-  int nearest = 50;                         ///< k for nearest; photons aimed at per estimate for automatic
+  int nearest = 50;                         ///< k for nearest, at most most_nearest_photons; photons aimed at per estimate for automatic
   double max_radius = 1.0;                  ///< for nearest [m]
   int max_depth = 20;                       ///< surfaces that a photon may meet
 };

@@ -49,6 +49,9 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
                 {"nearest", PhotonEstimate::nearest}});
   table.length("radius", settings.radius, positive_length, context.metres_per_unit);
   table.integer("nearest", settings.nearest, 1, 1 << 20);
+  if (settings.estimate == PhotonEstimate::nearest && settings.nearest > most_nearest_photons)
+    table.fail("nearest", "is more than can be searched for (" + std::to_string(most_nearest_photons) + ")",
+               "give a smaller number, or use photons.estimate = \"automatic\", which may aim at any number");
   table.length("max_radius", settings.max_radius, positive_length, context.metres_per_unit);
   table.integer("max_depth", settings.max_depth, 1, deepest_path);
   return settings;

@@ -195,6 +195,8 @@ TEST_CASE("render and photon settings") {
       {head + "[photons]\nradius = 0\n", 4, {"photons.radius is out of range"}},
       {head + "[photons]\nmax_radius = -1\n", 4, {"photons.max_radius is out of range"}},
       {head + "[photons]\nnearest = 0\n", 4, {"photons.nearest is out of range"}},
+      {head + "[photons]\nestimate = \"nearest\"\nnearest = 65\n", 5,
+       {"photons.nearest is more than can be searched for (64)", "automatic"}},
       {head + "[photons]\nestimate = \"radios\"\n", 4, {"did you mean 'radius'?"}},
       {head + "[photons]\nmax_depth = 1000000\n", 4, {"out of range"}},
   });

@@ -28,9 +28,9 @@ inline cl_float8 photon(glm::vec3 p, glm::vec3 direction, glm::vec3 power) {
 /// The device with the kernels that sort and gather.
 class Gatherer {
  public:
-  explicit Gatherer(unsigned group_size)
+  explicit Gatherer(unsigned group_size, const KernelFiles& files = {})
       : device_("", group_size),
-        programs_(device_, {}, {"photon_sort", "gather", "gather_nearest"}, Features{}.build_options()),
+        programs_(device_, files, {"photon_sort", "gather", "gather_nearest"}, Features{}.build_options()),
         context_{device_, programs_, scene_, data_, device_scene_, features_} {}
 
   std::vector<glm::vec3> within(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, float radius) {

@@ -93,7 +93,8 @@ TEST_CASE("illum in both readings") {
     CHECK(as_worksheet.material.surface == row.surface_worksheet);
     CHECK(as_common.warnings.empty() == !row.warns);
     CHECK(as_worksheet.warnings.empty() == !row.warns);
-    const std::string place = " (illum " + std::to_string(row.illum) + ", x.mtl:2)";
+    const std::string reading = row.illum == 2 ? " by mtl = common" : "";
+    const std::string place = " (illum " + std::to_string(row.illum) + reading + ", x.mtl:2)";
     CHECK(reports(as_common, "shader " + as_common.material.shader + place));
   }
   CHECK(read("illum 99\nKs .5\n", common).material.shader == "phong");
