@@ -47,7 +47,7 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
     const double least = axis == 0 ? 2.0 : 0.0;
     size[axis] = static_cast<uint32_t>(std::max(least, std::ceil(std::log2(std::max(cells, 1.0)))));
   }
-  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1))), 8u, 20u);
+  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1) / 4.0)), 8u, 20u);
   // Spare cells go to the axes along which photons spread, so that places outside of the crowd rarely wrap into it.
   const bool flat[3] = {size[0] <= 2, size[1] <= 1, size[2] <= 1};
   while (size[0] + size[1] + size[2] < most && !(flat[0] && flat[1] && flat[2])) {
