@@ -171,9 +171,6 @@ class Builder {
       }
       t.material = mesh.materials[i] + 1;
       data_.triangles.push_back(t);
-      // `shape` counts meshes here; number_shapes adds those that come before.
-      data_.tree_triangles.push_back({mesh.positions[mesh.triangles[i].x], mesh.positions[mesh.triangles[i].y],
-                                      mesh.positions[mesh.triangles[i].z], number, static_cast<uint32_t>(i)});
     }
     data_.meshes.push_back({first});
     mesh_number_[&shape - scene_.shapes.data()] = number;
@@ -318,7 +315,8 @@ class Builder {
   void number_shapes() {
     const uint32_t spheres = static_cast<uint32_t>(data_.spheres.size());
     const uint32_t exact = spheres + static_cast<uint32_t>(data_.flats.size());
-    for (TreeTriangle& t : data_.tree_triangles) t.shape += exact;
+    data_.tree_triangles = tree_triangles(scene_);
+    for (TreeTriangle& t : data_.tree_triangles) t.shape = exact + mesh_number_.at(t.shape);
     for (kernel::LightData& light : data_.lights)
       if (light.kind == LIGHT_QUAD || light.kind == LIGHT_DISC) light.shape += spheres;
   }
