@@ -6,12 +6,6 @@
 #include "film.h"
 #include "photon_map.h"
 
-// A surface that scatters.
-typedef struct {
-  float3 position, normal;
-  float3 diffuse;              // weight times rho_d
-} Receiver;
-
 // Power of photons, eight at a time.
 typedef struct {
   float8 red, green, blue;

@@ -3,6 +3,9 @@
 #ifndef VITRUM_QUEUE_FIELDS_H
 #define VITRUM_QUEUE_FIELDS_H
 
+// A ray leaves a mesh after error / cosine [m], the cosine to the facet's normal, and at grazing angles no later than this.
+#define LEAST_COSINE 0.03f
+
 #define RAY_ORIGIN 0           // 3 floats [m]: the unshifted point that the ray leaves
 #define RAY_DIRECTION 3        // 3 floats, unit length
 #define RAY_T_MIN 6            // [m]: hits at t <= t_min belong to the surface that the ray leaves

@@ -14,7 +14,6 @@
 #include "portability.h"
 #include "sequence.h"
 
-
 // 32-bit finaliser with full avalanche (Wellons, "hash-prospector", lowbias32).
 FUNCTION Uint hash32(Uint x) {
   x ^= x >> 16;

@@ -3,7 +3,7 @@
 #include "film.h"
 #include "queue.h"
 #include "blocks.h"
-
+#include "types.h"
 
 // Counts the children of each block. Reads: children [0, count). Writes: counts[block].
 __kernel void camera_count(const uint count, const uint stride, __global const float* children,
@@ -49,7 +49,7 @@ __kernel void camera_append(const uint count, const uint stride, __global const 
         next[(RAY_WEIGHT + axis) * next_stride + to] = children[(weight + axis) * stride + i];
         cosine = fma(d, surfaces[(SURFACE_NORMAL + axis) * stride + i], cosine);
       }
-      next[RAY_T_MIN * next_stride + to] = from == 0xffffffffu ? error / fmax(fabs(cosine), 0.03f) : error;
+      next[RAY_T_MIN * next_stride + to] = from == NO_INDEX ? error / fmax(fabs(cosine), LEAST_COSINE) : error;
       next[RAY_MEDIA * next_stride + to] = children[stack * stride + i];
       next[RAY_FROM * next_stride + to] = as_float(from);
       // A number of its own for each branch of the path (Wellons' finaliser would do; a multiplication is enough here,

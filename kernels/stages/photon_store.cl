@@ -11,11 +11,18 @@
 #define SUM_SURFACES (SUM_PHOTONS + OUTCOMES)
 #define SUMS (SUM_SURFACES + 1)
 
-// Adds power as fixed point to one outcome's three sums. 32 bits hold a photon of 2^7 times the mean power.
+// Power as fixed point. 32 bits, which convert fast, hold a photon of 2^7 times the mean power; beside a large light a
+// few carry more.
+FUNCTION Ulong fixed_point(const Float power, const Mask which, const float per_unit) {
+  const Float units = which ? fma(power, (Float)per_unit, (Float)0.5f) : 0.0f;
+  return ANY(units >= 4e9f) ? TO_ULONG(units) : TO_ULONG(TO_UINT(units));
+}
+
+// Adds power to one outcome's three sums.
 FUNCTION void add_power(const Vec3 power, const Mask which, const float per_unit, Ulong* sums) {
-  sums[0] += TO_ULONG(TO_UINT(which ? fma(power.x, (Float)per_unit, (Float)0.5f) : 0.0f));
-  sums[1] += TO_ULONG(TO_UINT(which ? fma(power.y, (Float)per_unit, (Float)0.5f) : 0.0f));
-  sums[2] += TO_ULONG(TO_UINT(which ? fma(power.z, (Float)per_unit, (Float)0.5f) : 0.0f));
+  sums[0] += fixed_point(power.x, which, per_unit);
+  sums[1] += fixed_point(power.y, which, per_unit);
+  sums[2] += fixed_point(power.z, which, per_unit);
 }
 
 FUNCTION ulong sum_of_lanes(const Ulong sums) {

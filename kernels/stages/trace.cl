@@ -125,12 +125,12 @@ __kernel void trace_mesh(SCENE_PARAMETERS, const uint count, const uint stride, 
   if (found) {
     const float3 size = fmax(fabs(fma((float3)(hit.t), ray.direction, ray.origin)), fabs(ray.origin));
     const float cosine = fabs(dot(ray.direction, triangle_normal(scene, triangle_of(scene, hit))));
-    const float band = SURFACE_ROUNDING * fmax(size.x, fmax(size.y, size.z)) / fmax(cosine, 0.03f);
+    const float band = SURFACE_ROUNDING * fmax(size.x, fmax(size.y, size.z)) / fmax(cosine, LEAST_COSINE);
     if (exact_is_opaque && t_exact <= hit.t + band) return;
     store_mesh_surface(scene, ray, hit, stride, i, surfaces);
   }
   const float first_cosine = fabs(dot(ray.direction, triple_at(surfaces, SURFACE_NORMAL, stride, i)));
-  const float band = surfaces[SURFACE_ERROR * stride + i] / fmax(first_cosine, 0.03f);
+  const float band = surfaces[SURFACE_ERROR * stride + i] / fmax(first_cosine, LEAST_COSINE);
   Hit near[TREE_MAX_HITS];
   const uint n = tree_hits_within(&ray, scene.nodes, scene.leaves, hit.t, hit.t + band, near);
   uint contacts = 0;

@@ -13,7 +13,7 @@ namespace vitrum {
 struct Features {
   bool mesh = false;            ///< triangle meshes, and so a tree
   bool dielectric = false;      ///< light is refracted somewhere
-  bool media_stack = false;     ///< media may touch, overlap or hold the eye or a light
+  bool media_stack = false;     ///< there are several bodies of media, which may touch or overlap
   bool contacts = false;        ///< a transparent mesh may touch another shape
   bool absorption = false;      ///< some medium absorbs
   bool textures = false;

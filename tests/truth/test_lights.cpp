@@ -134,3 +134,20 @@ TEST_CASE("photons bring each kind of light through a ball of air into its own s
     CHECK(irradiance(scene, 1, "radiance") == doctest::Approx(irradiance(scene, 1, "caustics")).epsilon(1e-6));
   }
 }
+
+TEST_CASE("the balance of power holds where a few photons carry far more than the mean") {
+  // A ball close under a corner of a large panel: from there it fills the sky, from elsewhere it is a speck.
+  Scene scene = white_plane();
+  scene.lights.push_back({"l", {}, QuadLight{{-10, 1, -10}, {20, 0, 0}, {0, 0, 20}, Spectrum(1.0)}});
+  scene.materials.push_back(glass(1.5, 3.0));
+  add(scene, Sphere{{9, 0.96, 9}, 0.03}, static_cast<uint32_t>(scene.materials.size() - 1));
+  scene.render.samples = 1;
+  scene.photons.count = 300'000;
+  Device device;
+  const PhotonBalance p = render(scene, device, {}).photons;
+  const Spectrum ends = p.stored + p.absorbed + p.direct + p.lost + p.cut;
+  for (int c = 0; c < 3; ++c) {
+    CHECK(p.shot[c] > 0.0);
+    CHECK(std::abs(ends[c] / p.shot[c] - 1.0) < 1e-6);
+  }
+}
