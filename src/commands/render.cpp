@@ -83,6 +83,7 @@ std::vector<View> views_of_names(const std::vector<std::string>& names) {
 
 void run_render(const RenderArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
+  start_image_process();
   set_quiet(arguments.quiet);
   RenderOptions options;
   options.kernels = arguments.kernels;
@@ -94,9 +95,8 @@ void run_render(const RenderArguments& arguments) {
     throw Error({"--kernels " + options.kernels.folder}, "there is no such folder",
                 "name the folder kernels/ of vitrum's sources");
 
-  // The device wakes up while the scene is read, and the module for pictures loads beside both.
+  // The device wakes up while the scene is read.
   prepare_opencl(threads);
-  preload_image_module();
   auto waking = std::async(std::launch::async, [&arguments, group_size] {
     return std::make_unique<Device>(arguments.device, group_size);
   });
@@ -124,6 +124,7 @@ void run_render(const RenderArguments& arguments) {
     write_picture(output, scene.film.width, scene.film.height, layers, display, metadata);
     note("wrote " + output);
   }
+  end_image_process();  // while the device is let go
   result.seconds["write"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - write_start).count();
   result.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!arguments.report.empty()) {

@@ -16,54 +16,14 @@
 
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
-#include "film/image_module.hpp"
+#include "film/image_process.hpp"
 
 namespace vitrum {
 namespace {
 
+using image_protocol::Status;
+
 constexpr uint64_t max_pixels = uint64_t(1) << 28;
-
-static_assert(sizeof(glm::vec3) == 3 * sizeof(float), "pixels are handed over as floats");
-
-// ---------------------------------------------------------------------------------------------- reading
-
-/// Refuses what is no ordinary file with something in it, before anything waits for it or reads it without end.
-void check_readable(const std::string& path, const SourceLocation& asked_by) {
-  const std::string picture = "the picture '" + path + "' ";
-  // Without O_NONBLOCK, opening a FIFO waits for a writer.
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) {
-    if (errno == ENOENT) throw Error(asked_by, picture + "does not exist", "check the name, or put the file there");
-    throw Error(asked_by, picture + "cannot be opened: " + std::strerror(errno), "check its name and permissions");
-  }
-  struct stat status {};
-  std::array<char, 64> start{};
-  const bool has_status = ::fstat(descriptor, &status) == 0;
-  const bool is_file = has_status && S_ISREG(status.st_mode);
-  const ssize_t length = is_file ? ::read(descriptor, start.data(), start.size()) : 0;
-  ::close(descriptor);
-  if (has_status && S_ISDIR(status.st_mode)) throw Error(asked_by, picture + "is a folder", "name a file");
-  if (!is_file) throw Error(asked_by, picture + "is not an ordinary file", "name a file");
-  if (length <= 0) throw Error(asked_by, picture + "is empty", "put a picture in its place");
-  if (std::string_view(start.data(), size_t(length)).starts_with("version https://git-lfs")) {
-    throw Error(asked_by, picture + "is not here: the file is a pointer of Git LFS", "fetch it with 'git lfs pull'");
-  }
-}
-
-/// Makes room for a picture of that size; for the C interface, so without exceptions.
-float* allocate_picture(void* user, int width, int height) {
-  auto& picture = *static_cast<Picture*>(user);
-  try {
-    picture.pixels.resize(size_t(width) * size_t(height));
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-  picture.width = width;
-  picture.height = height;
-  return &picture.pixels.data()->x;
-}
-
-// ---------------------------------------------------------------------------------------------- writing
 
 struct Format {
   std::string extension;
@@ -158,47 +118,52 @@ Channels file_channels(const Format& format, const std::vector<PictureLayer>& la
   if (format.takes_layers) return interleaved(layers, pixels);
   PictureLayer layer = format.is_linear ? layers.front() : for_display(layers.front(), display);
   if (!format.takes_grey) layer = spread_grey(std::move(layer));
-  return interleaved({alone(std::move(layer))}, pixels);
+  layer = alone(std::move(layer));
+  return {channel_names(layer), std::move(layer.values)};
 }
 
-std::vector<const char*> pointers(const std::vector<std::string>& texts) {
-  std::vector<const char*> all;
-  for (const std::string& text : texts) all.push_back(text.c_str());
-  return all;
-}
-
-int take_bytes(void* user, const void* bytes, size_t size) {
-  try {
-    static_cast<std::string*>(user)->assign(static_cast<const char*>(bytes), size);
-  } catch (const std::bad_alloc&) {
-    return 0;
-  }
-  return 1;
-}
-
-/// The bytes of a file in memory. Throws Error at {path}.
-std::string encoded(const std::string& path, const VitrumImageToEncode& image) {
-  std::string bytes;
-  VitrumImageMessage message{};
-  if (image_module({path}).encode(&image, take_bytes, &bytes, &message) != VITRUM_IMAGE_OK) {
-    throw Error({path}, std::string("the picture cannot be encoded: ") + message.text, "choose another format");
-  }
-  return bytes;
-}
+/// Closes each by a zero, as EncodeRequest has them.
+void append_text(std::string& texts, const std::string& text) { texts.append(text.c_str()).push_back('\0'); }
 
 }  // namespace
+
+void check_readable(const std::string& path, const SourceLocation& asked_by) {
+  const std::string picture = "the picture '" + path + "' ";
+  // Without O_NONBLOCK, opening a FIFO waits for a writer.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) {
+    if (errno == ENOENT) throw Error(asked_by, picture + "does not exist", "check the name, or put the file there");
+    throw Error(asked_by, picture + "cannot be opened: " + std::strerror(errno), "check its name and permissions");
+  }
+  struct stat status {};
+  std::array<char, 64> start{};
+  const bool has_status = ::fstat(descriptor, &status) == 0;
+  const bool is_file = has_status && S_ISREG(status.st_mode);
+  const ssize_t length = is_file ? ::read(descriptor, start.data(), start.size()) : 0;
+  ::close(descriptor);
+  if (has_status && S_ISDIR(status.st_mode)) throw Error(asked_by, picture + "is a folder", "name a file");
+  if (!is_file) throw Error(asked_by, picture + "is not an ordinary file", "name a file");
+  if (length <= 0) throw Error(asked_by, picture + "is empty", "put a picture in its place");
+  if (std::string_view(start.data(), size_t(length)).starts_with("version https://git-lfs")) {
+    throw Error(asked_by, picture + "is not here: the file is a pointer of Git LFS", "fetch it with 'git lfs pull'");
+  }
+}
 
 Picture read_picture(const std::string& path, const SourceLocation& asked_by) {
   check_readable(path, asked_by);
   Picture picture;
-  VitrumImageMessage message{};
-  const auto status = image_module(asked_by).read(path.c_str(), max_pixels, allocate_picture, &picture, &message);
-  if (status == VITRUM_IMAGE_OK) return picture;
-  const std::string reason = message.text[0] ? std::string(" (") + message.text + ")" : "";
-  if (status == VITRUM_IMAGE_TOO_LARGE) {
+  ImageAnswer answer;
+  try {
+    answer = decode_picture(path, max_pixels, asked_by, picture);
+  } catch (const std::bad_alloc&) {
+    answer = {Status::too_large, "out of memory"};
+  }
+  if (answer.status == Status::ok) return picture;
+  const std::string reason = answer.message.empty() ? "" : " (" + answer.message + ")";
+  if (answer.status == Status::too_large) {
     throw Error(asked_by, "the picture '" + path + "' is too large" + reason, "use one of at most 2^28 pixels");
   }
-  if (status == VITRUM_IMAGE_NOT_A_PICTURE) {
+  if (answer.status == Status::not_a_picture) {
     throw Error(asked_by, "the file '" + path + "' is no picture that can be read" + reason,
                 "use a PNG, JPEG, TIFF, EXR or another common picture");
   }
@@ -220,27 +185,27 @@ void write_picture(const std::string& path, int width, int height, const std::ve
   const Format format = format_of(path);
   const Channels channels = file_channels(format, layers, display, pixels);
 
-  std::vector<std::string> keys, values;
+  std::string texts;
+  append_text(texts, format.extension);
+  append_text(texts, std::string("vitrum ") + version());
+  for (const std::string& name : channels.names) append_text(texts, name);
   for (const auto& [key, value] : metadata) {
-    keys.push_back(key);
-    values.push_back(value);
+    append_text(texts, key);
+    append_text(texts, value);
   }
-  const std::string software = std::string("vitrum ") + version();
-  const auto names = pointers(channels.names), key_pointers = pointers(keys), value_pointers = pointers(values);
-  VitrumImageToEncode image{};
-  image.extension = format.extension.c_str();
-  image.width = width;
-  image.height = height;
-  image.channels = int(names.size());
-  image.channel_names = names.data();
-  image.values = channels.values.data();
-  image.is_float = format.is_linear;
-  image.is_srgb = !format.is_linear && display.srgb && layers.front().is_colour;
-  image.software = software.c_str();
-  image.metadata_count = int(metadata.size());
-  image.metadata_keys = key_pointers.data();
-  image.metadata_values = value_pointers.data();
-  write_whole_file(path, encoded(path, image));
+  image_protocol::EncodeRequest request{};
+  request.width = width;
+  request.height = height;
+  request.channels = int(channels.names.size());
+  request.is_float = format.is_linear;
+  request.is_srgb = !format.is_linear && display.srgb && layers.front().is_colour;
+  request.texts_bytes = uint32_t(texts.size());
+  std::string file;
+  const ImageAnswer answer = encode_picture(path, request, texts, channels.values, file);
+  if (answer.status != Status::ok) {
+    throw Error({path}, "the picture cannot be encoded: " + answer.message, "choose another format");
+  }
+  write_whole_file(path, file);
 }
 
 }  // namespace vitrum

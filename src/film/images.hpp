@@ -1,5 +1,5 @@
 #pragma once
-// Reading and writing pictures. OpenImageIO stands behind it, in a module that is opened at the first call.
+// Reading and writing pictures. OpenImageIO stands behind it, in a process that the first call starts.
 
 #include <glm/glm.hpp>
 #include <map>
@@ -28,12 +28,17 @@ struct PictureLayer {
                                             ///< made visible there by show_data_in_place (display.hpp)
 };
 
+/// Refuses what is no ordinary file with something in it, before anything waits for it or reads it without end. Cheap:
+/// does not tell whether it is a picture. Throws Error at `asked_by`.
+void check_readable(const std::string& path, const SourceLocation& asked_by);
+
 /// Reads a picture; values are as in the file (0..1 for integer formats), without any colour transform.
-/// Throws Error at `asked_by` for a file that is missing, no picture, cut short, or of more than 2^28 pixels.
+/// Throws Error at `asked_by` for a file that is missing, no picture, cut short, or of more than 2^28 pixels, or that
+/// ends the process. Thread-safe; one picture is read or written at a time.
 Picture read_picture(const std::string& path, const SourceLocation& asked_by);
 
 /// Checks that a picture can be written to `path`: a known extension, a folder that exists and can be written.
-/// Throws Error; called before rendering begins. Does not open the module, nor touch the file.
+/// Throws Error; called before rendering begins. Does not start the process, nor touch the file.
 void check_writable(const std::string& path);
 
 /// Writes layers to `path`, whole or not at all (core/whole_file.hpp). The same input gives the same bytes.
@@ -43,7 +48,12 @@ void check_writable(const std::string& path);
 void write_picture(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
                    const DisplaySettings& display, const std::map<std::string, std::string>& metadata);
 
-/// Opens the image module in the background, so that a later call finds it loaded. Errors come with that call.
-void preload_image_module();
+/// Starts the process for pictures, so that a later call finds it ready; does not wait for that. It ends with the
+/// program. Throws Error without a place if it cannot be started.
+void start_image_process();
+
+/// Ends the process for pictures, so that the end of the program need not; does not wait for that. A later call of
+/// read_picture or write_picture starts another.
+void end_image_process();
 
 }  // namespace vitrum

@@ -17,11 +17,13 @@
 
 extern char** environ;
 
-/// A vitrum that runs. Its environment is the test's, with the `settings` ("NAME=value") in front.
+/// A vitrum that runs. Its environment is the test's, with the `settings` ("NAME=value") in front; `program` may be a
+/// copy that stands elsewhere.
 class VitrumProcess {
  public:
-  explicit VitrumProcess(std::vector<std::string> arguments, std::vector<std::string> settings = {}) {
-    arguments.insert(arguments.begin(), VITRUM_BINARY_DIR "/vitrum");
+  explicit VitrumProcess(std::vector<std::string> arguments, std::vector<std::string> settings = {},
+                         const std::string& program = VITRUM_BINARY_DIR "/vitrum") {
+    arguments.insert(arguments.begin(), program);
     for (char** entry = environ; *entry != nullptr; ++entry) {
       const std::string name = std::string(*entry).substr(0, std::string(*entry).find('=') + 1);
       bool is_set = false;
@@ -33,7 +35,7 @@ class VitrumProcess {
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, (folder_ / "out").c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, (folder_ / "err").c_str(), O_WRONLY | O_CREAT, 0600);
-    const int fault = posix_spawn(&process_, VITRUM_BINARY_DIR "/vitrum", &files, nullptr, pointers(arguments).data(),
+    const int fault = posix_spawn(&process_, program.c_str(), &files, nullptr, pointers(arguments).data(),
                                   pointers(settings).data());
     posix_spawn_file_actions_destroy(&files);
     if (fault != 0) throw std::runtime_error("vitrum does not start");
@@ -58,6 +60,7 @@ class VitrumProcess {
     }
     return false;
   }
+  pid_t number() const { return process_; }
   void send(int signal_number) const { ::kill(process_, signal_number); }
 
   /// Waits for the end: the exit code, or minus the number of the signal that ended it.
@@ -86,8 +89,9 @@ struct Ended {
 };
 
 /// Runs vitrum to its end.
-inline Ended vitrum_run(const std::vector<std::string>& arguments, const std::vector<std::string>& settings = {}) {
-  VitrumProcess process(arguments, settings);
+inline Ended vitrum_run(const std::vector<std::string>& arguments, const std::vector<std::string>& settings = {},
+                        const std::string& program = VITRUM_BINARY_DIR "/vitrum") {
+  VitrumProcess process(arguments, settings, program);
   const int code = process.wait();
   return {code, process.out(), process.err()};
 }
