@@ -5,6 +5,7 @@
 #include "commands/scene_arguments.hpp"
 #include "device/scene_data.hpp"
 #include "scene/features.hpp"
+#include "scene/textures.hpp"
 
 namespace vitrum {
 namespace {
@@ -66,7 +67,8 @@ size_t bytes(const std::vector<T>& values) {
 }
 
 void run_info(const SceneArguments& arguments) {
-  const Scene scene = arguments.load();
+  Scene scene = arguments.load();
+  load_textures(scene);
   const Features features = scene_features(scene);
   const SceneData data = scene_data(scene, features);
 

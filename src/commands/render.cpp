@@ -14,6 +14,7 @@
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
 #include "film/images.hpp"
+#include "scene/textures.hpp"
 
 namespace vitrum {
 namespace {
@@ -95,16 +96,18 @@ void run_render(const RenderArguments& arguments) {
     throw Error({"--kernels " + options.kernels.folder}, "there is no such folder",
                 "name the folder kernels/ of vitrum's sources");
 
-  // The device wakes up while the scene is read.
+  // The device wakes up while the scene is read, and textures are decoded meanwhile in the process for pictures.
   prepare_opencl(threads);
   auto waking = std::async(std::launch::async, [&arguments, group_size] {
     return std::make_unique<Device>(arguments.device, group_size);
   });
-  const Scene scene = arguments.scene.load();
+  Scene scene = arguments.scene.load();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::shared_future<void> textures_ready = std::async(std::launch::async, [&scene] { load_textures(scene); });
   const std::unique_ptr<Device> device = waking.get();
   note("device: " + device->info().name);
 
+  textures_ready.get();
   RenderResult result = render(scene, *device, options);
   result.seconds["load"] = load_seconds;
 

@@ -1,7 +1,6 @@
 #include "scene/material_library.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/log.hpp"
 #include "core/suggest.hpp"
@@ -15,11 +14,6 @@ const MtlMaterial* find(const std::vector<MtlMaterial>& materials, const std::st
   // From the back: of two definitions the later one counts.
   const auto found = std::find_if(materials.rbegin(), materials.rend(), [&](const auto& m) { return m.name == name; });
   return found == materials.rend() ? nullptr : &*found;
-}
-
-/// IEC 61966-2-1: the linear value of an encoded one.
-float srgb_to_linear(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
 bool same_lookup(const Texture& a, const Texture& b) {
@@ -57,41 +51,16 @@ uint32_t MaterialLibrary::use(const std::string& name, const SourceLocation& ask
   const MtlMaterial said = table == tables_.end() ? *base : base ? overlaid(*base, table->second) : table->second;
   InterpretedMaterial interpreted = interpret(said, options_.reading);
   if (interpreted.texture && options_.textures)
-    interpreted.material.diffuse_texture = load_texture(std::move(*interpreted.texture));
+    interpreted.material.diffuse_texture = add_texture(std::move(*interpreted.texture));
   materials_.push_back(std::move(interpreted.material));
   return entry->second = static_cast<uint32_t>(materials_.size() - 1);
 }
 
-uint32_t MaterialLibrary::load_texture(Texture texture) {
+uint32_t MaterialLibrary::add_texture(Texture texture) {
   const auto same = std::find_if(textures_.begin(), textures_.end(),
                                  [&](const Texture& t) { return same_lookup(t, texture); });
   if (same != textures_.end()) return static_cast<uint32_t>(same - textures_.begin());
-
-  const auto same_texels = std::find_if(textures_.begin(), textures_.end(), [&](const Texture& t) {
-    return t.path == texture.path && t.colour_space == texture.colour_space;
-  });
-  if (same_texels != textures_.end()) {
-    texture.width = same_texels->width;
-    texture.height = same_texels->height;
-    texture.texels = same_texels->texels;
-  } else {
-    Picture picture = read_picture(texture.path, texture.where);
-    texture.width = picture.width;
-    texture.height = picture.height;
-    texture.texels = std::move(picture.pixels);
-    bool above_one = false;
-    for (glm::vec3& texel : texture.texels) {
-      for (int channel = 0; channel < 3; ++channel) {
-        if (!(texel[channel] >= 0.0f && std::isfinite(texel[channel])))
-          throw Error(texture.where, "the texture '" + texture.path + "' holds values that are negative or no number",
-                      "a reflectance lies between 0 and 1");
-        if (texture.colour_space == ColourSpace::srgb) texel[channel] = srgb_to_linear(texel[channel]);
-        above_one |= texel[channel] > 1.0f;
-      }
-    }
-    if (above_one)
-      warn(texture.where, "the texture '" + texture.path + "' holds reflectances above 1, which make light");
-  }
+  check_readable(texture.path, texture.where);
   textures_.push_back(std::move(texture));
   return static_cast<uint32_t>(textures_.size() - 1);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Which material a name stands for, and the materials and textures that are really used.
+// Which material a name stands for, and the materials and textures that are really used. Textures have no texels here.
 
 #include <map>
 #include <set>
@@ -17,7 +17,7 @@ class MaterialLibrary {
  public:
   struct Options {
     MtlReading reading = MtlReading::common;
-    bool textures = true;                   ///< false: no texture is read
+    bool textures = true;                   ///< false: materials have none
   };
 
   /// `files`: what the scene file's `materials` hold, later ones replacing earlier ones of the same name.
@@ -39,7 +39,7 @@ class MaterialLibrary {
   std::vector<Texture>& textures() { return textures_; }
 
  private:
-  uint32_t load_texture(Texture texture);
+  uint32_t add_texture(Texture texture);
 
   Options options_;
   std::vector<MtlMaterial> files_;

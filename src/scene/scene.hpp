@@ -1,7 +1,8 @@
 #pragma once
 // What is to be rendered: a plain description, in metres, with units stated at every value and nothing of OpenCL.
 //
-// A Scene is made by load_scene (scene_file.hpp), read by everything after it, and never changed again.
+// A Scene is made by load_scene (scene_file.hpp) and load_textures (textures.hpp), read by everything after them, and
+// never changed again.
 // Everything here is in world space: transforms are applied when a shape is loaded.
 
 #include <cstdint>
@@ -31,13 +32,14 @@ enum class TextureFilter { nearest, bilinear };
 
 /// A picture on a surface. A texel is looked up at (u, v) = scale * (u0, v0) + offset, v upwards from the bottom row.
 struct Texture {
-  std::string path;                         ///< file that was read
+  std::string path;                         ///< the picture's file
   SourceLocation where;                     ///< who asked for it
   ColourSpace colour_space = ColourSpace::srgb;
   TextureFilter filter = TextureFilter::bilinear;
   bool clamp = false;                       ///< false: repeats
   glm::dvec2 offset{0.0};
   glm::dvec2 scale{1.0};
+  // These come by load_textures.
   int width = 0, height = 0;                ///< texels
   std::vector<glm::vec3> texels;            ///< linear reflectance, row 0 at the top, width * height of them
 };

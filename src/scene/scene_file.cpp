@@ -97,7 +97,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   scene.photons = read_photon_settings(root.table("photons"), context);
   scene.lights = read_lights(root, context);
 
-  // Everything in the scene file is checked before the first mesh or texture is read.
+  // Everything in the scene file is checked before the first mesh is read.
   const std::vector<ShapeDeclaration> declarations = read_shapes(root, context);
   MaterialLibrary library = make_library(root, context, scene.render.textures);
   if (declarations.empty() && scene.lights.empty())

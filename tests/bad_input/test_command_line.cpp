@@ -114,8 +114,29 @@ TEST_CASE("bad texture") {
   put_file(files.obj, "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n");
   put_file(files.mtl, "newmtl red\nillum 1\nmap_Kd wood.png\n");
   files.check_render_refused("a.mtl:3:1", "wood.png' does not exist", "check the name");
-  put_file(files.folder / "wood.png", "this is no picture");
-  files.check_render_refused("a.mtl:3:1", "is no picture", "use a PNG");
+  put_file(files.folder / "wood.png", "");
+  files.check_render_refused("a.mtl:3:1", "is empty", "put a picture");
+}
+
+TEST_CASE("a texture that turns out to be broken leaves no output") {
+  const MeshScene files;
+  put_file(files.obj, "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n");
+  put_file(files.mtl, "newmtl red\nillum 1\nmap_Kd wood.png\n");
+  const std::string grass = file_bytes(models + "default_scene/grass.png");
+  std::string damaged = grass;
+  for (size_t i = 0; i < 64; ++i) damaged[grass.size() / 2 + i] = '\0';
+  const auto check = [&](const std::string& bytes, const std::string& problem, const std::string& mend) {
+    put_file(files.folder / "wood.png", bytes);
+    const int before = files.folder.entries();
+    const Words outputs{"-o", files.folder / "a.png", "-o", files.folder / "b.exr", "--report", files.folder / "r.json"};
+    // Standard error holds that one line: nothing that a decoder has to say beside it.
+    check_refused(Words{"render", files.scene, "--quiet"} + outputs + small, files.mtl + ":3:1", problem, mend);
+    check_refused({"info", files.scene}, files.mtl + ":3:1", problem, mend);
+    CHECK(files.folder.entries() == before);
+  };
+  check("this is no picture", "is no picture", "use a PNG");
+  check(grass.substr(0, grass.size() / 2), "is damaged or cut short", "put a sound copy");
+  check(damaged, "is damaged or cut short", "put a sound copy");
 }
 
 TEST_CASE("bad command line") {

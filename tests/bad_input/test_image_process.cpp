@@ -216,6 +216,21 @@ TEST_CASE("vitrum_images by itself says whose it is") {
   CHECK(contains(run.err, "run vitrum instead"));
 }
 
+TEST_CASE("a render whose process for pictures is killed while it reads a texture") {
+  const TemporaryFolder folder;
+  VitrumProcess process({"render", default_scene, "-o", folder / "a.png", "-o", folder / "b.exr", "--size", "16x16"});
+  const pid_t images = image_process_of(process.number());
+  ::kill(images, SIGSTOP);
+  REQUIRE(process.has_said("device:"));
+  wait_a_little();
+  ::kill(images, SIGKILL);
+  CHECK(process.wait() == 1);
+  CHECK(contains(process.err(), "vitrum: error: " + lawn_texture + "the picture '"));
+  CHECK(contains(process.err(), "grass.png' cannot be read"));
+  CHECK(state_of(images).letter == 'X');
+  CHECK(folder.entries() == 0);
+}
+
 TEST_CASE("a render outlives its process for pictures, which outlives signals of the terminal; none is left") {
   const TemporaryFolder folder;
   VitrumProcess process({"render", default_scene, "-o", folder / "a.png", "-o", folder / "b.exr", "--size", "128x128",

@@ -11,6 +11,7 @@
 #include "reference/renderer.hpp"
 #include "render/render.hpp"
 #include "scene/scene_file.hpp"
+#include "scene/textures.hpp"
 
 namespace vitrum {
 namespace {
@@ -24,7 +25,9 @@ std::string model(const char* name) { return std::string(VITRUM_SOURCE_DIR "/mod
 Scene small_scene(const char* name, std::vector<std::string> overrides = {}) {
   overrides.insert(overrides.begin(),
                    {"film.size=[64, 64]", "render.samples=1", "render.caustics=false"});
-  return load_scene(model(name), overrides);
+  Scene scene = load_scene(model(name), overrides);
+  load_textures(scene);
+  return scene;
 }
 
 /// Largest difference of a channel, relative to the pixel's brightest one.

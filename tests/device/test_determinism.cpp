@@ -9,6 +9,7 @@
 
 #include "render/render.hpp"
 #include "scene/scene_file.hpp"
+#include "scene/textures.hpp"
 #include "temporary_folder.hpp"
 
 namespace vitrum {
@@ -35,7 +36,9 @@ RenderResult rendered(const Case& c, unsigned group_size) {
   Device device("", group_size);
   RenderOptions options;
   options.views = all_views;
-  return render(load_scene(scene_path(c), c.overrides), device, options);
+  Scene scene = load_scene(scene_path(c), c.overrides);
+  load_textures(scene);
+  return render(scene, device, options);
 }
 
 void check_same(const RenderResult& a, const RenderResult& b) {

@@ -12,6 +12,7 @@
 
 #include "scene/media.hpp"
 #include "scene/scene_file.hpp"
+#include "scene/textures.hpp"
 #include "scratch.hpp"
 
 using namespace vitrum;
@@ -98,6 +99,7 @@ TEST_CASE("every model loads without a warning") {
     CapturedWarnings warnings;
     Scene scene;
     CHECK_NOTHROW(scene = load_scene(path));
+    CHECK_NOTHROW(load_textures(scene));
     CHECK(warnings.text() == "");
     CHECK(!scene.shapes.empty());
     CHECK(!scene.lights.empty());

@@ -7,6 +7,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "scene/scene_file.hpp"
+#include "scene/textures.hpp"
 #include "scratch.hpp"
 
 using namespace vitrum;
@@ -363,9 +364,11 @@ TEST_CASE("textures are read once, decoded, and only when they are used") {
       "texture_colour_space = \"linear\"\ntexture_filter = \"nearest\"\n"
       "[shape.a]\nmaterial = \"a\"\n" + plane + "[shape.b]\nmaterial = \"b\"\n" + plane + "[shape.c]\nmaterial = \"c\"\n" + plane;
   const std::string path = folder.write("scene.toml", text);
-  const Scene scene = load_scene(path);
+  Scene scene = load_scene(path);
   REQUIRE(scene.materials.size() == 3);
   REQUIRE(scene.textures.size() == 2);
+  CHECK(scene.textures[0].texels.empty());
+  load_textures(scene);
   CHECK(scene.materials[0].diffuse_texture == 0);
   CHECK(scene.materials[1].diffuse_texture == 0);
   CHECK(scene.materials[2].diffuse_texture == 1);
