@@ -1,10 +1,13 @@
 #include "device/opencl.hpp"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 
 #include "core/error.hpp"
 
@@ -54,6 +57,39 @@ DeviceInfo describe(const cl::Device& device) {
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
+}
+
+constexpr size_t huge_page = size_t{1} << 21;
+constexpr size_t worth_huge_pages = 2 * huge_page;
+
+struct Mapping {
+  void* address;
+  size_t bytes;
+};
+
+/// A buffer of a CPU device in huge pages, where the system has them: a first touch of small ones costs a photon as much
+/// as its path through the glass.
+cl::Buffer huge_buffer(const cl::Context& context, size_t bytes) {
+  const size_t mapped = (bytes + huge_page - 1) / huge_page * huge_page + huge_page;
+  void* const address = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (address == MAP_FAILED) throw cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE);
+  madvise(address, mapped, MADV_HUGEPAGE);
+  auto mapping = std::make_unique<Mapping>(Mapping{address, mapped});
+  const auto unmap = [](cl_mem, void* user) {
+    const std::unique_ptr<Mapping> owned(static_cast<Mapping*>(user));
+    munmap(owned->address, owned->bytes);
+  };
+  void* const aligned =
+      reinterpret_cast<void*>((reinterpret_cast<uintptr_t>(address) + huge_page - 1) / huge_page * huge_page);
+  try {
+    cl::Buffer buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, aligned);
+    buffer.setDestructorCallback(unmap, mapping.get());
+    mapping.release();
+    return buffer;
+  } catch (const cl::Error&) {
+    munmap(address, mapped);
+    throw;
+  }
 }
 
 [[noreturn]] void fail(const cl::Error& error, const std::string& doing, const std::string& mend) {
@@ -165,7 +201,8 @@ cl::Buffer Device::allocate_bytes(size_t bytes, const char* purpose) {
     throw Error({}, "the device cannot give " + size + " in one piece (it gives " +
                         std::to_string(info_.max_allocation / 1048576) + " MiB)", mend);
   try {
-    cl::Buffer buffer(context_, CL_MEM_READ_WRITE, bytes);
+    cl::Buffer buffer = info_.is_cpu && bytes >= worth_huge_pages ? huge_buffer(context_, bytes)
+                                                                  : cl::Buffer(context_, CL_MEM_READ_WRITE, bytes);
     memory_[purpose] += bytes;
     return buffer;
   } catch (const cl::Error& error) {
@@ -189,9 +226,10 @@ void Device::read_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, v
   }
 }
 
-void Device::read_strided_bytes(const cl::Buffer& buffer, size_t bytes, size_t stride, size_t count, void* data) {
+void Device::read_strided_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, size_t stride, size_t count,
+                                void* data) {
   try {
-    queue_.enqueueReadBufferRect(buffer, CL_TRUE, {0, 0, 0}, {0, 0, 0}, {bytes, count, 1}, stride, 0, bytes, 0, data);
+    queue_.enqueueReadBufferRect(buffer, CL_TRUE, {offset, 0, 0}, {0, 0, 0}, {bytes, count, 1}, stride, 0, bytes, 0, data);
   } catch (const cl::Error& error) {
     fail(error, "copying from the device", "another device may do better (--device)");
   }
@@ -202,16 +240,6 @@ void Device::fill_zero_bytes(const cl::Buffer& buffer, size_t bytes) {
     queue_.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes);
   } catch (const cl::Error& error) {
     fail(error, "clearing device memory", "another device may do better (--device)");
-  }
-}
-
-cl::Buffer Device::sub_buffer(const cl::Buffer& buffer, size_t offset, size_t bytes) {
-  try {
-    const cl_buffer_region region = {offset, bytes};
-    cl::Buffer parent = buffer;
-    return parent.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region);
-  } catch (const cl::Error& error) {
-    fail(error, "dividing device memory", "another device may do better (--device)");
   }
 }
 

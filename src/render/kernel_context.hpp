@@ -21,9 +21,6 @@ struct KernelContext {
   size_t packets(size_t count) const { return (count + device.width() - 1) / device.width(); }
 };
 
-/// Entries that one work-item of the counting and copying stages minds (BLOCK of kernels/blocks.h).
-inline constexpr uint32_t block_size = 256;
-
 /// Stride for arrays of fields with room for `count` entries: whole SIMD lanes, and not a power of two, or all fields
 /// of an entry would fall into the same few lines of a CPU's cache (a third of the photons' time was lost to that).
 inline uint32_t padded(uint64_t count) { return static_cast<uint32_t>((count + 1023) / 1024 * 1024 + 16); }

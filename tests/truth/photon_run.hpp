@@ -24,7 +24,7 @@ class PhotonRun {
   /// Shoots `count` photons of `replicate` and returns those that were stored: x, y, z, -, power r, g, b, - each.
   std::vector<cl_float8> shoot(uint32_t replicate, uint64_t count) {
     pass_.run(replicate, 0, count, [](double) {});
-    return device_.read(pass_.map().photons, 0, pass_.map().count);
+    return read_photons(device_, pass_.map());
   }
 
   /// Sum over all shots.
