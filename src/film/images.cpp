@@ -17,11 +17,12 @@
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
 #include "film/image_module.hpp"
+#include "film/picture_layers.hpp"
 
 namespace vitrum {
 namespace {
 
-constexpr uint64_t max_pixels = uint64_t(1) << 28;
+constexpr uint64_t max_pixels = uint64_t(1) << 28, max_values = 3 * max_pixels;
 
 static_assert(sizeof(glm::vec3) == 3 * sizeof(float), "pixels are handed over as floats");
 
@@ -61,6 +62,35 @@ float* allocate_picture(void* user, int width, int height) {
   picture.width = width;
   picture.height = height;
   return &picture.pixels.data()->x;
+}
+
+/// Throws the Error for a file that the module has not read.
+[[noreturn]] void refuse(VitrumImageStatus status, const VitrumImageMessage& message, const std::string& path,
+                         const SourceLocation& asked_by) {
+  const std::string reason = message.text[0] ? std::string(" (") + message.text + ")" : "";
+  if (status == VITRUM_IMAGE_TOO_LARGE) {
+    throw Error(asked_by, "the picture '" + path + "' is too large" + reason, "use one of at most 2^28 pixels");
+  }
+  if (status == VITRUM_IMAGE_NOT_A_PICTURE) {
+    throw Error(asked_by, "the file '" + path + "' is no picture that can be read" + reason,
+                "use a PNG, JPEG, TIFF, EXR or another common picture");
+  }
+  throw Error(asked_by, "the picture '" + path + "' is damaged or cut short" + reason, "put a sound copy in its place");
+}
+
+/// Makes room for all that a file holds; for the C interface, so without exceptions.
+float* allocate_channels(void* user, const VitrumImageContents* contents) {
+  auto& picture = *static_cast<PictureChannels*>(user);
+  try {
+    picture.names.assign(contents->channel_names, contents->channel_names + contents->channels);
+    picture.values.resize(size_t(contents->width) * size_t(contents->height) * size_t(contents->channels));
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+  picture.width = contents->width;
+  picture.height = contents->height;
+  picture.is_float = contents->is_float != 0;
+  return picture.values.data();
 }
 
 // ---------------------------------------------------------------------------------------------- writing
@@ -193,16 +223,18 @@ Picture read_picture(const std::string& path, const SourceLocation& asked_by) {
   Picture picture;
   VitrumImageMessage message{};
   const auto status = image_module(asked_by).read(path.c_str(), max_pixels, allocate_picture, &picture, &message);
-  if (status == VITRUM_IMAGE_OK) return picture;
-  const std::string reason = message.text[0] ? std::string(" (") + message.text + ")" : "";
-  if (status == VITRUM_IMAGE_TOO_LARGE) {
-    throw Error(asked_by, "the picture '" + path + "' is too large" + reason, "use one of at most 2^28 pixels");
-  }
-  if (status == VITRUM_IMAGE_NOT_A_PICTURE) {
-    throw Error(asked_by, "the file '" + path + "' is no picture that can be read" + reason,
-                "use a PNG, JPEG, TIFF, EXR or another common picture");
-  }
-  throw Error(asked_by, "the picture '" + path + "' is damaged or cut short" + reason, "put a sound copy in its place");
+  if (status != VITRUM_IMAGE_OK) refuse(status, message, path, asked_by);
+  return picture;
+}
+
+LayeredPicture read_layers(const std::string& path, const SourceLocation& asked_by) {
+  check_readable(path, asked_by);
+  PictureChannels channels;
+  VitrumImageMessage message{};
+  const auto status = image_module(asked_by).read_channels(path.c_str(), max_pixels, max_values, allocate_channels,
+                                                           &channels, &message);
+  if (status != VITRUM_IMAGE_OK) refuse(status, message, path, asked_by);
+  return in_layers(channels);
 }
 
 void check_writable(const std::string& path) {

@@ -32,6 +32,19 @@ struct PictureLayer {
 /// Throws Error at `asked_by` for a file that is missing, no picture, cut short, or of more than 2^28 pixels.
 Picture read_picture(const std::string& path, const SourceLocation& asked_by);
 
+/// A picture with all that its file holds.
+struct LayeredPicture {
+  int width = 0, height = 0;
+  bool is_float = false;                    ///< floats, which as a rule are linear; else integers, read as 0..1
+  std::vector<PictureLayer> layers;         ///< in the order of their first channels in the file
+};
+
+/// Reads a picture with all its layers, the inverse of write_picture: channels R, G, B or X, Y, Z of one prefix are a
+/// layer of three channels, any other channel is one by itself. A layer has the name of the prefix, without a prefix
+/// that of a colour is "beauty"; grey without a prefix is spread over three channels. A channel that would take a name
+/// that is taken has its full name, and so have plain ones, such as "A". Values and errors are those of read_picture.
+LayeredPicture read_layers(const std::string& path, const SourceLocation& asked_by);
+
 /// Checks that a picture can be written to `path`: a known extension, a folder that exists and can be written.
 /// Throws Error; called before rendering begins. Does not open the module, nor touch the file.
 void check_writable(const std::string& path);

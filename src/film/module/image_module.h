@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 /// Raised by every change of what stands here, so that a module of another build is refused.
-#define VITRUM_IMAGE_MODULE_VERSION 1
+#define VITRUM_IMAGE_MODULE_VERSION 2
 /// The one symbol of the module, a function of type VitrumImageModuleEntry.
 #define VITRUM_IMAGE_MODULE_ENTRY "vitrum_image_module"
 
@@ -29,6 +29,16 @@ typedef struct {
 
 /// Gives room for width * height * 3 floats, or NULL if there is none. Called once, before any pixel is read.
 typedef float* (*VitrumImageAllocate)(void* user, int width, int height);
+
+/// What a file holds, all its channels.
+typedef struct {
+  int width, height, channels;
+  const char* const* channel_names;  ///< `channels` of them, in the order of the values; valid during the call
+  int is_float;                      ///< 0: integers, which are read as 0..1
+} VitrumImageContents;
+
+/// Gives room for width * height * channels floats, or NULL if there is none. Called once, before any pixel is read.
+typedef float* (*VitrumImageAllocateChannels)(void* user, const VitrumImageContents* contents);
 
 /// Takes the bytes of an encoded file. Called once. Returns 0 if there is no room for them.
 typedef int (*VitrumImageTake)(void* user, const void* bytes, size_t size);
@@ -52,6 +62,10 @@ typedef struct {
   /// Decodes the file at `path` as RGB; grey is spread. Refuses pictures of more than `max_pixels` pixels unread.
   VitrumImageStatus (*read)(const char* path, uint64_t max_pixels, VitrumImageAllocate allocate, void* user,
                             VitrumImageMessage* message);
+  /// Decodes all channels of the file at `path`, interleaved; of a file of several pictures, those of the first.
+  /// Refuses pictures of more than `max_pixels` pixels or `max_values` values unread.
+  VitrumImageStatus (*read_channels)(const char* path, uint64_t max_pixels, uint64_t max_values,
+                                     VitrumImageAllocateChannels allocate, void* user, VitrumImageMessage* message);
   /// Encodes `image` in memory. The same image gives the same bytes.
   VitrumImageStatus (*encode)(const VitrumImageToEncode* image, VitrumImageTake take, void* user,
                               VitrumImageMessage* message);

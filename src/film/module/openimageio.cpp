@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
@@ -52,11 +53,12 @@ ColourChannels colour_channels(const OIIO::ImageSpec& spec) {
   return {0, spec.nchannels >= 3 ? 3 : 1};
 }
 
-VitrumImageStatus read_file(const char* path, uint64_t max_pixels, VitrumImageAllocate allocate, void* user,
+/// Opens the file at `path` as `input`, if it holds plain pixels, and not too many.
+VitrumImageStatus open_file(const char* path, uint64_t max_pixels, std::unique_ptr<OIIO::ImageInput>& input,
                             VitrumImageMessage* message) {
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are in the file, not multiplied by alpha
-  const auto input = OIIO::ImageInput::open(path, &wishes);
+  input = OIIO::ImageInput::open(path, &wishes);
   if (!input) {
     say(message, OIIO::geterror());
     return VITRUM_IMAGE_NOT_A_PICTURE;
@@ -70,6 +72,15 @@ VitrumImageStatus read_file(const char* path, uint64_t max_pixels, VitrumImageAl
     say(message, std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
     return VITRUM_IMAGE_TOO_LARGE;
   }
+  return VITRUM_IMAGE_OK;
+}
+
+VitrumImageStatus read_file(const char* path, uint64_t max_pixels, VitrumImageAllocate allocate, void* user,
+                            VitrumImageMessage* message) {
+  std::unique_ptr<OIIO::ImageInput> input;
+  const VitrumImageStatus status = open_file(path, max_pixels, input, message);
+  if (status != VITRUM_IMAGE_OK) return status;
+  const OIIO::ImageSpec& spec = input->spec();
   const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
   float* const values = allocate(user, spec.width, spec.height);
   if (!values) {
@@ -86,6 +97,34 @@ VitrumImageStatus read_file(const char* path, uint64_t max_pixels, VitrumImageAl
   }
   if (colour.count == 1) {
     for (size_t i = 0; i < pixels; ++i) values[3 * i + 1] = values[3 * i + 2] = values[3 * i];
+  }
+  return VITRUM_IMAGE_OK;
+}
+
+VitrumImageStatus read_all_channels(const char* path, uint64_t max_pixels, uint64_t max_values,
+                                    VitrumImageAllocateChannels allocate, void* user, VitrumImageMessage* message) {
+  std::unique_ptr<OIIO::ImageInput> input;
+  const VitrumImageStatus status = open_file(path, max_pixels, input, message);
+  if (status != VITRUM_IMAGE_OK) return status;
+  const OIIO::ImageSpec& spec = input->spec();
+  const uint64_t values_of_pixel = static_cast<uint64_t>(spec.nchannels);
+  if (static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) > max_values / values_of_pixel) {
+    say(message, std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels of " +
+                     std::to_string(spec.nchannels) + " channels");
+    return VITRUM_IMAGE_TOO_LARGE;
+  }
+  std::vector<const char*> names;
+  for (int i = 0; i < spec.nchannels; ++i) names.push_back(spec.channelnames.at(static_cast<size_t>(i)).c_str());
+  const VitrumImageContents contents{spec.width, spec.height, spec.nchannels, names.data(),
+                                     spec.format.is_floating_point()};
+  float* const values = allocate(user, &contents);
+  if (!values) {
+    say(message, "out of memory");
+    return VITRUM_IMAGE_TOO_LARGE;
+  }
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values) || input->has_error()) {
+    say(message, input->geterror());
+    return VITRUM_IMAGE_DAMAGED;
   }
   return VITRUM_IMAGE_OK;
 }
@@ -155,6 +194,12 @@ VitrumImageStatus read(const char* path, uint64_t max_pixels, VitrumImageAllocat
   return guarded(VITRUM_IMAGE_DAMAGED, message, [&] { return read_file(path, max_pixels, allocate, user, message); });
 }
 
+VitrumImageStatus read_channels(const char* path, uint64_t max_pixels, uint64_t max_values,
+                                VitrumImageAllocateChannels allocate, void* user, VitrumImageMessage* message) {
+  return guarded(VITRUM_IMAGE_DAMAGED, message,
+                 [&] { return read_all_channels(path, max_pixels, max_values, allocate, user, message); });
+}
+
 VitrumImageStatus encode(const VitrumImageToEncode* image, VitrumImageTake take, void* user,
                          VitrumImageMessage* message) {
   return guarded(VITRUM_IMAGE_FAILED, message, [&] { return encode_file(*image, take, user, message); });
@@ -163,6 +208,6 @@ VitrumImageStatus encode(const VitrumImageToEncode* image, VitrumImageTake take,
 }  // namespace
 
 extern "C" const VitrumImageModule* vitrum_image_module() {
-  static const VitrumImageModule module{VITRUM_IMAGE_MODULE_VERSION, read, encode};
+  static const VitrumImageModule module{VITRUM_IMAGE_MODULE_VERSION, read, read_channels, encode};
   return &module;
 }
