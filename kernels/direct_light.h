@@ -133,12 +133,12 @@ FUNCTION Vec3 direct_light(const Scene scene, const uint light_index, __global c
   Vec3 share = multiply3(reflected, scale3(lit ? cos_theta : 0.0f, in.irradiance));
 #if HAS_ABSORPTION
   // Glass casts shadows, so the light has come all the way through the medium that the surface lies in.
-  const Uint medium = media & 0xffu;
-  if (ANY(lit & (medium != 0))) {
-    const Vec3 sigma_a = FIELD3(scene.media, sigma_a, lit ? medium : (Uint)0);
-    const Float way = smaller(in.distance, 3e38f);
-    share = multiply3(share, make_vec3(transmittance(sigma_a.x, way), transmittance(sigma_a.y, way),
-                                       transmittance(sigma_a.z, way)));
+  Mask todo = lit & ((media & 0xffu) != 0);
+  while (ANY(todo)) {
+    const uint stack = LANE(media, uint, first_lane(todo));
+    const Mask here = todo & (media == stack);
+    todo &= here == 0;
+    share = select3(here, multiply3(share, media_transmittance(scene, stack, in.distance)), share);
   }
 #endif
   // [/direct]

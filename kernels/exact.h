@@ -12,13 +12,15 @@
 FUNCTION Float sphere_distance(__global const SphereData* sphere, const RayPacket rays, const Mask leaving) {
   const Vec3 to_centre = subtract3(uniform3(sphere->centre), rays.origin);
   const Float along = dot3(to_centre, rays.direction);
+  const Float t_other = along > 0.0f ? 2.0f * along : INFINITY;
+  // Rays inside of a ball mostly come in company.
+  if (!ANY(leaving == 0)) return t_other;
   const Vec3 across = along3(to_centre, -along, rays.direction);
   const Float room = fma((Float)sphere->radius, (Float)sphere->radius, -dot3(across, across));
   const Float half_chord = sqrt(room > 0.0f ? room : 0.0f);
   const Float t_near = along - half_chord;
   const Float t_far = along + half_chord;
   const Float t_first = t_near > rays.t_min ? t_near : t_far > rays.t_min ? t_far : INFINITY;
-  const Float t_other = along > 0.0f ? 2.0f * along : INFINITY;
   return leaving ? t_other : room >= 0.0f ? t_first : INFINITY;
 }
 

@@ -27,8 +27,14 @@ FUNCTION float3 total_power(const Sums* sums) { return (float3)(sum8(sums->red),
 
 #if CAUSTICS == CAUSTICS_NEAREST
 #include "gather_nearest.h"
-#else
+#elif CAUSTICS == CAUSTICS_WITHIN
 #include "gather_within.h"
+#else
+typedef struct {
+  uint count;                  // 0
+} PhotonMap;
+#define PHOTON_MAP_PARAMETERS
+#define PHOTON_MAP { 0 }
 #endif
 
 // A kernel lists `PHOTON_MAP_PARAMETERS` and starts with `const PhotonMap map = PHOTON_MAP;`. The host sets the arguments

@@ -17,7 +17,7 @@ typedef struct {
 
 #define PHOTON_MAP_PARAMETERS                                                                                        \
   , const uint n_photons, const uint nearest, const float max_radius, const PhotonTreeData photon_tree,              \
-      __global const float *restrict photon_nodes, __global const float *restrict photon_leaves
+      __global const float *photon_nodes, __global const float *photon_leaves
 #define PHOTON_MAP { n_photons, nearest, max_radius, photon_tree, photon_nodes, photon_leaves }
 
 FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) { return (Mask)-1; }

@@ -14,7 +14,7 @@ typedef struct {
 
 #define PHOTON_MAP_PARAMETERS                                                                                        \
   , const uint n_photons, const GridData grid, const float radius, const float4 low, const float4 high,              \
-      const uint map_stride, __global const uint *restrict first_of_cell, __global const float *restrict map_photons
+      const uint map_stride, __global const uint *first_of_cell, __global const float *map_photons
 #define PHOTON_MAP { n_photons, grid, radius, low, high, map_stride, first_of_cell, map_photons }
 
 // Where there may be photons at all.

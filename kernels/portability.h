@@ -14,7 +14,10 @@
 #ifdef __OPENCL_VERSION__
 
 #pragma OPENCL FP_CONTRACT OFF
-#define FUNCTION inline __attribute__((always_inline))
+// static, so that no copy of each function is compiled for itself beside those that are inlined.
+#define FUNCTION static inline __attribute__((always_inline))
+// The body of a kernel. PoCL compiles a kernel three times over, but what it calls only once.
+#define BODY static __attribute__((noinline)) void
 // ulong8 passes between functions in another way with AVX-512 than without: no matter, since all of them are inlined.
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wpsabi"
@@ -62,20 +65,30 @@ typedef JOIN(ulong, WIDTH) Ulong;
 #define STORE(array, i, value) JOIN(vstore, WIDTH)((value), 0, (array) + (i))
 #define LANE(value, type, lane) (((const type*)&(value))[lane])
 #define SET_LANE(value, type, lane, to) (((type*)&(value))[lane] = (to))
-#define GATHER_4(a, i) (a)[(i).s0], (a)[(i).s1], (a)[(i).s2], (a)[(i).s3]
-#define GATHER_8(a, i) GATHER_4(a, i), (a)[(i).s4], (a)[(i).s5], (a)[(i).s6], (a)[(i).s7]
 #if WIDTH == 4
 #define LANES ((Uint)(0, 1, 2, 3))
-#define GATHER(type, a, i) ((type)(GATHER_4(a, i)))
 #elif WIDTH == 8
 #define LANES ((Uint)(0, 1, 2, 3, 4, 5, 6, 7))
-#define GATHER(type, a, i) ((type)(GATHER_8(a, i)))
 #else
 #define LANES ((Uint)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
-#define GATHER(type, a, i)                                                                                            \
-  ((type)(GATHER_8(a, i), (a)[(i).s8], (a)[(i).s9], (a)[(i).sa], (a)[(i).sb], (a)[(i).sc], (a)[(i).sd], (a)[(i).se], \
-          (a)[(i).sf]))
 #endif
+// array[i] in each lane, of floats or uints; i below 2^31. One instruction where the processor has it: spelt out, it is a
+// hundred for the compiler to chew on.
+#define GATHER(type, array, i) JOIN(GATHER_, type)(array, i)
+#define GATHER_Float(array, i) gathered((array), (i))
+#define GATHER_Uint(array, i) AS_UINT(gathered((__global const float*)(array), (i)))
+static inline __attribute__((always_inline)) Float gathered(__global const float* array, const Uint i) {
+#if WIDTH == 16 && defined(__AVX512F__)
+  return as_float16(__builtin_ia32_gathersiv16sf((Float)(0.0f), (const void*)(ulong)array, as_int16(i), (ushort)0xffff, 4));
+#elif WIDTH == 8 && defined(__AVX2__)
+  return as_float8(__builtin_ia32_gatherd_ps256((Float)(0.0f), (const float*)(ulong)array, as_int8(i),
+                                                as_float8((int8)(-1)), 4));
+#else
+  Float values;
+  for (uint lane = 0; lane < WIDTH; ++lane) ((float*)&values)[lane] = array[((const uint*)&i)[lane]];
+  return values;
+#endif
+}
 #endif
 
 #else  // C++

@@ -50,8 +50,11 @@ FUNCTION SurfacePacket trace_exact(const Scene scene, const RayPacket packet, co
 #if HAS_TEXTURES
     if (textured && scene.materials[scene.spheres[s].material].texture != NO_INDEX) {
       // Longitude from -x over +z, latitude from the south pole.
-      tex_u = here ? fma(atan2(-n.z, n.x), (Float)0.15915494309189534f, (Float)0.5f) : tex_u;
-      tex_v = here ? fma(asin(clamp(n.y, (Float)-1.0f, (Float)1.0f)), (Float)0.3183098861837907f, (Float)0.5f) : tex_v;
+      FOR_LANES(lane, here) {
+        const float3 up = LANE3(n, lane);
+        SET_LANE(tex_u, float, lane, fma(atan2(-up.z, up.x), 0.15915494309189534f, 0.5f));
+        SET_LANE(tex_v, float, lane, fma(asin(clamp(up.y, -1.0f, 1.0f)), 0.3183098861837907f, 0.5f));
+      }
     }
 #endif
   }

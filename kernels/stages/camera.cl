@@ -4,14 +4,10 @@
 // stack of its own while the refracted ones are followed. So nothing depends on timing, and samples may be dealt out to
 // launches in any way: a pixel's shares are added up in the same order.
 #include "film.h"
+#include "gather.h"
 #include "sampler.h"
 #include "shade.h"
 #include "trace.h"
-#if CAUSTICS != CAUSTICS_NONE
-#include "gather.h"
-#else
-#define PHOTON_MAP_PARAMETERS
-#endif
 
 // Rays through `pixel` for a sample. `jitter` 0: through the pixel's centre.
 FUNCTION CameraRays camera_rays(__global const CameraData* camera, __global const CameraSample* sample,
@@ -90,20 +86,12 @@ FUNCTION void store_film3(__global float* film, uint plane, uint stride, uint i,
   STORE(film, (plane + 2) * stride + i, value.z);
 }
 
-// Samples [first_sample, last_sample) of pixels [first_pixel, last_pixel); first_pixel is a multiple of WIDTH, and the
-// film has room for whole packets. `eye_media`: the stack at the eye. `first_hits`: 1: albedo, normal and depth are wanted.
-__kernel void camera(SCENE_PARAMETERS, __global const CameraData* restrict camera_data,
-                     __global const CameraSample* restrict samples, const uint first_sample, const uint last_sample,
-                     const uint jitter, const uint first_pixel, const uint last_pixel, const uint max_depth,
-                     const float min_weight, const float eye_index, const uint eye_media, const uint n_lights,
-                     const uint first_hits PHOTON_MAP_PARAMETERS, const uint film_stride, __global float* restrict film,
-                     __global uint* restrict counts) {
-  const uint i = first_pixel + get_global_id(0) * WIDTH;
-  if (i >= last_pixel) return;
-  const Scene scene = SCENE;
-  const CameraLimits limits = {max_depth, min_weight, eye_index};
+BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits limits,
+                  __global const CameraData* camera_data, __global const CameraSample* samples,
+                  const uint first_sample, const uint last_sample, const uint jitter, const uint i,
+                  const uint last_pixel, const uint eye_media, const uint n_lights, const uint first_hits,
+                  const uint film_stride, __global float* restrict film, __global uint* restrict counts) {
 #if CAUSTICS != CAUSTICS_NONE
-  const PhotonMap map = PHOTON_MAP;
   Vec3 caustics = load_film3(film, FILM_CAUSTICS, film_stride, i);
 #endif
   Vec3 beauty = load_film3(film, FILM_BEAUTY, film_stride, i);
@@ -166,4 +154,21 @@ __kernel void camera(SCENE_PARAMETERS, __global const CameraData* restrict camer
   STORE(film, FILM_CUT * film_stride + i, cut);
   count_rays(counts + COUNT_SECONDARY, secondary_rays);
   count_rays(counts + COUNT_SHADOW, shadow_rays);
+}
+
+// Samples [first_sample, last_sample) of pixels [first_pixel, last_pixel); first_pixel is a multiple of WIDTH, and the
+// film has room for whole packets. `eye_media`: the stack at the eye. `first_hits`: 1: albedo, normal and depth are
+// wanted.
+__kernel void camera(SCENE_PARAMETERS, __global const CameraData* camera_data, __global const CameraSample* samples,
+                     const uint first_sample, const uint last_sample, const uint jitter, const uint first_pixel,
+                     const uint last_pixel, const uint max_depth, const float min_weight, const float eye_index,
+                     const uint eye_media, const uint n_lights, const uint first_hits PHOTON_MAP_PARAMETERS,
+                     const uint film_stride, __global float* film, __global uint* counts) {
+  const uint i = first_pixel + get_global_id(0) * WIDTH;
+  if (i >= last_pixel) return;
+  const Scene scene = SCENE;
+  const PhotonMap map = PHOTON_MAP;
+  const CameraLimits limits = {max_depth, min_weight, eye_index};
+  trace_pixels(scene, map, limits, camera_data, samples, first_sample, last_sample, jitter, i, last_pixel, eye_media,
+               n_lights, first_hits, film_stride, film, counts);
 }

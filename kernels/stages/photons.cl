@@ -232,20 +232,11 @@ FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Ma
 #endif
 }
 
-// The first `count` photons of the sequences, `run_length` to a run; runs are numbered from `first_run` on. `share`: of the pair's power for each photon; `upstream`: see emission.h.
-__kernel void photons(SCENE_PARAMETERS, __global const CasterData* restrict casters, const uint n_casters,
-                      __global const SequenceData* restrict sequences, const uint light_index, const uint caster,
-                      const float share, const float upstream, const uint count, const uint run_length,
-                      const uint first_run, const uint max_depth, __global float* restrict map,
-                      __global PhotonRunData* restrict runs) {
-  const uint run = get_global_id(0);
-  const uint first = run * run_length;
-  if (first >= count) return;
-  const uint last = min(first + run_length, count);
-  const Scene scene = SCENE;
-  __global const LightData* light = &scene.lights[light_index];
-  __global float* fields = map + photon_in_run(run_length, first_run + run, 0);
-
+// Photons [first, last) of the sequences, a run. `fields`: its piece of the map.
+BODY follow_run(const Scene scene, __global const LightData* light, __global const CasterData* casters,
+                const uint n_casters, const uint caster, __global const SequenceData* sequences, const float share,
+                const float upstream, const uint first, const uint last, const uint run_length, const uint max_depth,
+                __global float* restrict fields, __global PhotonRunData* restrict report) {
   Tally power[OUTCOMES];
   Uint ended[OUTCOMES];
   for (uint k = 0; k < OUTCOMES; ++k) {
@@ -309,7 +300,6 @@ __kernel void photons(SCENE_PARAMETERS, __global const CasterData* restrict cast
     } while (n_alive > WIDTH / 2);
   }
 
-  __global PhotonRunData* report = &runs[first_run + run];
   for (uint k = 0; k < OUTCOMES; ++k) {
     total_of_lanes(power[k].sum.x, power[k].rest.x, &report->power[k][0], &report->power_rest[k][0]);
     total_of_lanes(power[k].sum.y, power[k].rest.y, &report->power[k][1], &report->power_rest[k][1]);
@@ -322,4 +312,19 @@ __kernel void photons(SCENE_PARAMETERS, __global const CasterData* restrict cast
   uint surfaces_met = 0;
   for (uint lane = 0; lane < WIDTH; ++lane) surfaces_met += LANE(surfaces, uint, lane);
   report->surfaces = surfaces_met;
+}
+
+// The first `count` photons of the sequences, `run_length` to a run; runs are numbered from `first_run` on. `share`: of
+// the pair's power for each photon; `upstream`: see emission.h.
+__kernel void photons(SCENE_PARAMETERS, __global const CasterData* casters, const uint n_casters,
+                      __global const SequenceData* sequences, const uint light_index, const uint caster,
+                      const float share, const float upstream, const uint count, const uint run_length,
+                      const uint first_run, const uint max_depth, __global float* map, __global PhotonRunData* runs) {
+  const uint run = get_global_id(0);
+  const uint first = run * run_length;
+  if (first >= count) return;
+  const Scene scene = SCENE;
+  follow_run(scene, &scene.lights[light_index], casters, n_casters, caster, sequences, share, upstream, first,
+             min(first + run_length, count), run_length, max_depth,
+             map + photon_in_run(run_length, first_run + run, 0), &runs[first_run + run]);
 }

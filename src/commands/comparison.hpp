@@ -89,7 +89,7 @@ std::vector<Verdict> verdicts(const Comparison& comparison, const std::vector<Th
 
 bool is_any_exceeded(const std::vector<Verdict>& all);
 
-/// For a reader, and for programs.
+/// For a reader, and for kernels.
 std::string comparison_text(const Comparison& comparison, const std::vector<Verdict>& all);
 std::string comparison_report(const Comparison& comparison, const std::vector<Verdict>& all);
 

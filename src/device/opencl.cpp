@@ -1,13 +1,10 @@
 #include "device/opencl.hpp"
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
 
 #include "core/error.hpp"
 
@@ -57,39 +54,6 @@ DeviceInfo describe(const cl::Device& device) {
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
-}
-
-constexpr size_t huge_page = size_t{1} << 21;
-constexpr size_t worth_huge_pages = 2 * huge_page;
-
-struct Mapping {
-  void* address;
-  size_t bytes;
-};
-
-/// A buffer of a CPU device in huge pages, where the system has them: a first touch of small ones costs a photon as much
-/// as its path through the glass.
-cl::Buffer huge_buffer(const cl::Context& context, size_t bytes) {
-  const size_t mapped = (bytes + huge_page - 1) / huge_page * huge_page + huge_page;
-  void* const address = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (address == MAP_FAILED) throw cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE);
-  madvise(address, mapped, MADV_HUGEPAGE);
-  auto mapping = std::make_unique<Mapping>(Mapping{address, mapped});
-  const auto unmap = [](cl_mem, void* user) {
-    const std::unique_ptr<Mapping> owned(static_cast<Mapping*>(user));
-    munmap(owned->address, owned->bytes);
-  };
-  void* const aligned =
-      reinterpret_cast<void*>((reinterpret_cast<uintptr_t>(address) + huge_page - 1) / huge_page * huge_page);
-  try {
-    cl::Buffer buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, aligned);
-    buffer.setDestructorCallback(unmap, mapping.get());
-    mapping.release();
-    return buffer;
-  } catch (const cl::Error&) {
-    munmap(address, mapped);
-    throw;
-  }
 }
 
 [[noreturn]] void fail(const cl::Error& error, const std::string& doing, const std::string& mend) {
@@ -201,8 +165,7 @@ cl::Buffer Device::allocate_bytes(size_t bytes, const char* purpose) {
     throw Error({}, "the device cannot give " + size + " in one piece (it gives " +
                         std::to_string(info_.max_allocation / 1048576) + " MiB)", mend);
   try {
-    cl::Buffer buffer = info_.is_cpu && bytes >= worth_huge_pages ? huge_buffer(context_, bytes)
-                                                                  : cl::Buffer(context_, CL_MEM_READ_WRITE, bytes);
+    cl::Buffer buffer(context_, CL_MEM_READ_WRITE, bytes);
     memory_[purpose] += bytes;
     return buffer;
   } catch (const cl::Error& error) {

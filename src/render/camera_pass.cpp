@@ -33,7 +33,7 @@ struct CameraPass::State {
     device.fill_zero(film);
     counts = device.allocate<uint32_t>(COUNTS, "film");
     device.fill_zero(counts);
-    kernel = context.programs.kernel("camera", "camera");
+    kernel = context.kernels.get("camera");
   }
 
   /// What samples [first, first + count) of a replicate have in common over all pixels.

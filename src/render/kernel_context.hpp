@@ -3,7 +3,7 @@
 
 #include "device/device_scene.hpp"
 #include "device/opencl.hpp"
-#include "device/programs.hpp"
+#include "device/kernels.hpp"
 #include "scene/features.hpp"
 #include "scene/scene.hpp"
 
@@ -11,7 +11,7 @@ namespace vitrum {
 
 struct KernelContext {
   Device& device;
-  const Programs& programs;
+  const Kernels& kernels;
   const Scene& scene;
   const SceneData& data;
   const DeviceScene& device_scene;

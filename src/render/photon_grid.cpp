@@ -13,6 +13,7 @@ namespace {
 constexpr uint32_t sort_blocks = 32;           // ranges of runs that are counted side by side
 constexpr uint32_t photons_per_bucket = 4096;  // their rows fit a CPU's second cache
 constexpr size_t sample_size = 1024;
+constexpr size_t judged_places = 128;          // of the sample, around which the density is looked at
 
 /// Places of photons from all runs, the first few of each: those of a low-discrepancy sequence spread well.
 std::vector<glm::vec3> sample_of(Device& device, const PhotonMap& map) {
@@ -41,7 +42,8 @@ float automatic_radius(std::span<const glm::vec3> sample, uint64_t count, int wa
   if (sample.size() < 16) return 0.01f;
   constexpr size_t k = 8;
   std::vector<float> distance2(sample.size()), radius2;
-  for (const glm::vec3& p : sample) {
+  for (size_t place = 0; place < sample.size(); place += (sample.size() + judged_places - 1) / judged_places) {
+    const glm::vec3 p = sample[place];
     for (size_t i = 0; i < sample.size(); ++i) {
       const glm::vec3 d = sample[i] - p;
       distance2[i] = glm::dot(d, d);
@@ -109,7 +111,7 @@ void PhotonGrid::sort(PhotonMap& map) {
     first_of_bucket_ = device.allocate<uint32_t>(buckets + 1, "photon map");
   if (bucketed_.size() < map.count) bucketed_ = device.allocate<cl_float8>(map.count, "photon map");
 
-  auto kernel = [&](const char* name) { return context_.programs.kernel("photon_sort", name); };
+  auto kernel = [&](const char* name) { return context_.kernels.get(name); };
   cl::Kernel count = kernel("sort_count"), into_buckets = kernel("sort_into_buckets"),
              into_cells = kernel("sort_into_cells");
   set_arguments(count, 0, map.grid, n_runs, map.run_length, sort_blocks, buckets, shift, map.runs, map.photons, counts_,

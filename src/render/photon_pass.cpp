@@ -93,7 +93,7 @@ struct PhotonPass::State {
         if (flux > 0.0) pairs.push_back({l, k, static_cast<float>(upstream), flux});
       }
     sequences = device.allocate<kernel::SequenceData>(PHOTON_DIMENSIONS, "lights");
-    kernel = context.programs.kernel("photons", "photons");
+    kernel = context.kernels.get("photons");
     // A GPU wants many work-items.
     map.run_length = device.info().is_cpu ? 1024 : 64;
   }

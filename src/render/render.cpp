@@ -65,12 +65,12 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   Tree tree;
   if (features.mesh) tree = build_tree(data.tree_triangles);
   result.seconds["tree"] = seconds_since(start);
-  const Programs programs(device, options.kernels, stages_for(features), features.build_options());
-  result.seconds["build"] = programs.build_seconds();
+  const Kernels kernels(device, options.kernels, stages_for(features), features.build_options());
+  result.seconds["build"] = kernels.build_seconds();
   const auto upload_start = std::chrono::steady_clock::now();
   const DeviceScene device_scene = upload(device, data, features, features.mesh ? &tree : nullptr);
   result.seconds["upload"] = seconds_since(upload_start);
-  const KernelContext context{device, programs, scene, data, device_scene, features};
+  const KernelContext context{device, kernels, scene, data, device_scene, features};
 
   const uint32_t samples = static_cast<uint32_t>(scene.render.samples);
   const uint64_t photons = features.caustics ? scene.photons.count : 0;

@@ -31,8 +31,8 @@ class Gatherer {
  public:
   explicit Gatherer(unsigned group_size, const KernelFiles& files = {})
       : device_("", group_size),
-        programs_(device_, files, {"photon_sort"}, Features{}.build_options()),
-        context_{device_, programs_, scene_, data_, device_scene_, features_},
+        kernels_(device_, files, {"photon_sort"}, Features{}.build_options()),
+        context_{device_, kernels_, scene_, data_, device_scene_, features_},
         within_(gather_kernel(files, false)),
         nearest_(gather_kernel(files, true)) {}
 
@@ -108,7 +108,7 @@ class Gatherer {
   }
 
   Device device_;
-  Programs programs_;
+  Kernels kernels_;
   Scene scene_;
   SceneData data_;
   DeviceScene device_scene_;

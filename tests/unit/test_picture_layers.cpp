@@ -37,7 +37,7 @@ TEST_CASE("channels are sorted into layers by their names") {
   CHECK(layers_of({"mask.Y"}) == "mask=0");
 }
 
-TEST_CASE("channels of other programs") {
+TEST_CASE("channels of other kernels") {
   CHECK(layers_of({"View.Combined.R", "View.Combined.G", "View.Combined.B", "View.Combined.A", "View.Depth.Z"}) ==
         "View.Combined=012 View.Combined.A=3* View.Depth=4*");
   CHECK(layers_of({"X", "Y", "Z"}) == "XYZ=012*");
