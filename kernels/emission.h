@@ -7,7 +7,7 @@
 #define VITRUM_EMISSION_H
 
 #include "lights.h"
-#include "queue.h"
+#include "packet.h"
 #include "sampler.h"
 
 typedef struct {
@@ -32,42 +32,53 @@ FUNCTION Mask covers(__global const CasterData* caster, const Vec3 origin, const
   return directional ? in_line : (dot3(to_centre, to_centre) <= radius2) | ((along > 0.0f) & in_line);
 }
 
+// Where the light aims from one of its places: at the caster's bound, or in all directions.
+typedef struct {
+  Vec3 axis;
+  Frame frame;                 // around the axis
+  Float one_minus_cos_max;     // of the cone
+} Aim;
+
 // [aimed]
-// u[0..1]: direction, or place on the disc of a directional light; u[2..3]: place on the light; `face`: of a mesh light.
-// `upstream` [m]: how far before the caster a directional light's photons start.
-FUNCTION Emission emit(const Scene scene, __global const LightData* light, __global const CasterData* casters,
-                       const uint n_casters, const uint caster_index, const Float u[4], const Uint face,
+FUNCTION Aim aim_at(__global const CasterData* caster, const LightPoint from, const int is_point) {
+  const Vec3 centre = uniform3(caster->centre);
+  const Float whole = cone_of_sphere(from.position, centre, caster->radius);
+  // From inside the bound: all directions, of a surface the half before it.
+  const Mask aimed = whole < 2.0f;
+  Aim aim;
+  aim.one_minus_cos_max = aimed ? whole : is_point ? (Float)2.0f : (Float)1.0f;
+  aim.axis = select3(aimed, normalize3(subtract3(centre, from.position)), from.normal);
+  aim.frame = frame_around(aim.axis);
+  return aim;
+}
+
+// u[0..1]: direction, or place on the disc of a directional light. `aim`: from the place on the light; of no interest to
+// a directional one. `upstream` [m]: how far before the caster a directional light's photons start.
+FUNCTION Emission emit(__global const LightData* light, __global const CasterData* casters, const uint n_casters,
+                       const uint caster_index, const LightPoint from, const Aim* aim, const Float u[2],
                        const float upstream) {
   __global const CasterData* caster = &casters[caster_index];
-  const Vec3 centre = uniform3(caster->centre);
-  const float radius = caster->radius;
-  const LightPoint from = point_on_light(scene, light, u[2], u[3], face);
   Float sine, cosine;
   sin_cos_turn(u[1], &sine, &cosine);
 
   Emission emission;
   if (light->kind == LIGHT_DIRECTIONAL) {
+    const float radius = caster->radius;
     const Float r = radius * sqrt(u[0]);
     const Vec3 on_disc = in_frame(frame_around(from.normal), from.normal, r * cosine, r * sine, -upstream);
-    emission.origin = add3(centre, on_disc);
+    emission.origin = add3(uniform3(caster->centre), on_disc);
     emission.direction = from.normal;
     emission.power = scale3(3.14159265358979f * radius * radius, from.emitted);
   } else {
-    const int is_point = light->kind == LIGHT_POINT;
-    const Float whole = cone_of_sphere(from.position, centre, radius);
-    // From inside the bound: all directions, of a surface the half before it.
-    const Mask aimed = whole < 2.0f;
-    const Float one_minus_cos_max = aimed ? whole : is_point ? (Float)2.0f : (Float)1.0f;
-    const Vec3 axis = select3(aimed, normalize3(subtract3(centre, from.position)), from.normal);
     // 1 - cos is what is uniform in a cone, and sin follows from it without cancellation.
-    const Float one_minus_cos = u[0] * one_minus_cos_max;
+    const Float one_minus_cos = u[0] * aim->one_minus_cos_max;
     const Float sin_theta = sqrt(one_minus_cos * (2.0f - one_minus_cos));
+    const Vec3 in_cone = in_frame(aim->frame, aim->axis, sin_theta * cosine, sin_theta * sine, 1.0f - one_minus_cos);
     emission.origin = from.position;
-    emission.direction = normalize3(
-        in_frame(frame_around(axis), axis, sin_theta * cosine, sin_theta * sine, 1.0f - one_minus_cos));
+    emission.direction = scale3(fma(-0.5f, dot3(in_cone, in_cone), 1.5f), in_cone);  // Newton: off by roundings only
     const Float facing = dot3(emission.direction, from.normal);
-    const Float cos_theta = is_point ? (Float)1.0f : facing > 0.0f ? facing : 0.0f;
-    const Float solid_angle = 6.28318530717958648f * one_minus_cos_max;
+    const Float cos_theta = light->kind == LIGHT_POINT ? (Float)1.0f : facing > 0.0f ? facing : 0.0f;
+    const Float solid_angle = 6.28318530717958648f * aim->one_minus_cos_max;
     emission.power = scale3(from.area * solid_angle * cos_theta, from.emitted);
   }
 
@@ -77,7 +88,7 @@ FUNCTION Emission emit(const Scene scene, __global const LightData* light, __glo
       covering += covers(&casters[i], emission.origin, emission.direction, light->kind == LIGHT_DIRECTIONAL)
                       ? (Float)1.0f
                       : (Float)0.0f;
-  emission.power = scale3(1.0f / covering, emission.power);
+  if (n_casters > 1) emission.power = scale3(1.0f / covering, emission.power);
   return emission;
 }
 // [/aimed]

@@ -2,7 +2,7 @@
 #ifndef VITRUM_EXACT_H
 #define VITRUM_EXACT_H
 
-#include "queue.h"
+#include "packet.h"
 #include "scene.h"
 
 // Distance to the first point of the sphere beyond t_min, INFINITY if there is none. `leaving`: the ray starts on this
@@ -12,13 +12,15 @@
 FUNCTION Float sphere_distance(__global const SphereData* sphere, const RayPacket rays, const Mask leaving) {
   const Vec3 to_centre = subtract3(uniform3(sphere->centre), rays.origin);
   const Float along = dot3(to_centre, rays.direction);
+  const Float t_other = along > 0.0f ? 2.0f * along : INFINITY;
+  // Rays inside of a ball mostly come in company.
+  if (!ANY(leaving == 0)) return t_other;
   const Vec3 across = along3(to_centre, -along, rays.direction);
   const Float room = fma((Float)sphere->radius, (Float)sphere->radius, -dot3(across, across));
   const Float half_chord = sqrt(room > 0.0f ? room : 0.0f);
   const Float t_near = along - half_chord;
   const Float t_far = along + half_chord;
   const Float t_first = t_near > rays.t_min ? t_near : t_far > rays.t_min ? t_far : INFINITY;
-  const Float t_other = along > 0.0f ? 2.0f * along : INFINITY;
   return leaving ? t_other : room >= 0.0f ? t_first : INFINITY;
 }
 
@@ -27,16 +29,21 @@ typedef struct {
   Float u, v;                  // in the shape's own coordinates
 } FlatHit;
 
-// Where rays meet the flat shape beyond t_min. A ray that leaves the shape never meets it again.
-FUNCTION FlatHit flat_hit(__global const FlatData* flat, const RayPacket rays, const Mask leaving) {
+// Where rays meet the flat shape beyond t_min. A ray that leaves the shape never meets it again. u and v only where they
+// are wanted or decide.
+FUNCTION FlatHit flat_hit(__global const FlatData* flat, const RayPacket rays, const Mask leaving, const int with_uv) {
   const Vec3 normal = uniform3(flat->normal);
   const Vec3 from_point = subtract3(rays.origin, uniform3(flat->point));
   FlatHit hit;
   // A ray in the plane gives NaN or infinity, which compare false below.
   hit.t = -dot3(normal, from_point) / dot3(normal, rays.direction);
-  const Vec3 p = along3(from_point, hit.t, rays.direction);
-  hit.u = dot3(p, uniform3(flat->u_axis));
-  hit.v = dot3(p, uniform3(flat->v_axis));
+  hit.u = 0.0f;
+  hit.v = 0.0f;
+  if (with_uv || flat->kind != FLAT_PLANE) {
+    const Vec3 p = along3(from_point, hit.t, rays.direction);
+    hit.u = dot3(p, uniform3(flat->u_axis));
+    hit.v = dot3(p, uniform3(flat->v_axis));
+  }
   Mask met = (hit.t > rays.t_min) & (hit.t < INFINITY) & (leaving == 0);
   if (flat->kind == FLAT_TRIANGLE) met &= (hit.u >= 0.0f) & (hit.v >= 0.0f) & (hit.u + hit.v <= 1.0f);
   if (flat->kind == FLAT_PARALLELOGRAM) met &= (hit.u >= 0.0f) & (hit.v >= 0.0f) & (hit.u <= 1.0f) & (hit.v <= 1.0f);
@@ -51,7 +58,7 @@ FUNCTION Mask exact_any_hit(const Scene scene, const RayPacket rays, const Uint 
   Mask met = 0;
   for (uint i = 0; i < scene.n_spheres; ++i) met |= sphere_distance(&scene.spheres[i], rays, from == i) < rays.t_max;
   for (uint i = 0; i < scene.n_flats; ++i)
-    met |= flat_hit(&scene.flats[i], rays, from == scene.n_spheres + i).t < rays.t_max;
+    met |= flat_hit(&scene.flats[i], rays, from == scene.n_spheres + i, 0).t < rays.t_max;
   return met;
 }
 

@@ -58,50 +58,68 @@ FUNCTION Fresnel fresnel(const Interface border, const Float cos_theta_i) {
 // [/fresnel]
 
 // [refract]
+// scale * direction + along * normal, which is of unit length but for roundings: one Newton step of 1 / sqrt(|d|^2) takes
+// those off.
+FUNCTION Vec3 deflected(const Float scale, const Vec3 direction, const Float along, const Vec3 normal) {
+  const Vec3 d = along3(scale3(scale, direction), along, normal);
+  return scale3(fma(-0.5f, dot3(d, d), 1.5f), d);
+}
+
 // Direction of the refracted ray: unit `direction` towards the border, unit `normal` on the incident side, `f` of the
 // same border and angle. Unit length within rounding. Not to be called at total reflection.
 FUNCTION Vec3 refracted_direction(const Interface border, const Fresnel f, const Vec3 direction, const Vec3 normal) {
-  const Vec3 t = along3(scale3(border.eta_inverse, direction), -f.bend, normal);
-  // One Newton step of 1 / sqrt(|t|^2) takes the roundings off the length; index-matched, t is already `direction`.
-  const Float stretch = fma(-0.5f, dot3(t, t), 1.5f);
-  return select3(border.k_hi == 0.0f, direction, scale3(stretch, t));
+  const Vec3 refracted = deflected(border.eta_inverse, direction, -f.bend, normal);
+  return select3(border.k_hi == 0.0f, direction, refracted);
 }
 
 // Direction of the mirrored ray. Unit length within rounding.
 FUNCTION Vec3 reflected_direction(const Vec3 direction, const Vec3 normal) {
-  const Vec3 r = along3(direction, -2.0f * dot3(direction, normal), normal);
-  return scale3(fma(-0.5f, dot3(r, r), 1.5f), r);
+  return deflected(1.0f, direction, -2.0f * dot3(direction, normal), normal);
+}
+
+// The one or the other, lane by lane, bit by bit the same.
+FUNCTION Vec3 chosen_direction(const Interface border, const Fresnel f, const Mask reflect, const Vec3 direction,
+                               const Vec3 normal) {
+  const Vec3 chosen = deflected(reflect ? (Float)1.0f : border.eta_inverse, direction,
+                                reflect ? -2.0f * dot3(direction, normal) : -f.bend, normal);
+  return select3((border.k_hi == 0.0f) & (reflect == 0), direction, chosen);
 }
 // [/refract]
 
 // [bouguer]
-// Fraction of the light left after `distance` [m] in a medium of absorption sigma_a [1/m] (Bouguer's law).
-// sigma_a = INFINITY is opaque: nothing is left after any distance above 0; distance is finite. Relative error below
-// 5e-7 down to the least normal float, 0 under it.
-FUNCTION Float transmittance(const Float sigma_a, const Float distance) {
+typedef struct {
+  Float left;                  // fraction of the light that is left
+  Float taken;                 // fraction absorbed, 1 - left without its cancellation: for the balance of power
+} Attenuation;
+
+// Bouguer's law: light after `distance` [m] in a medium of absorption sigma_a [1/m]. sigma_a = INFINITY is opaque:
+// nothing is left after any distance above 0; distance is finite. Relative error of what is left below 5e-7 down to the
+// least normal float, 0 under it. The same bits on every device.
+// exp(-x) = 2^-k exp(y) with x = k ln 2 - y, |y| <= ln 2 / 2 (Cody and Waite 1980), exp(y) - 1 by Cephes' polynomial of
+// expf; y takes up what the product sigma_a * distance lost in rounding.
+FUNCTION Attenuation attenuation(const Float sigma_a, const Float distance) {
   const Mask opaque = sigma_a == INFINITY;
-  const Float x = opaque ? 0.0f : sigma_a * distance;
-  const Float t = exp(-x);
-  // What the product lost in rounding, to first order; not where it is infinite.
-  const Float corrected = fma(-t, fma(sigma_a, distance, -x), t);
-  const Float left = ((x > 88.0f) | (corrected < 1.17549435e-38f)) ? 0.0f : corrected;
-  return opaque ? (distance > 0.0f ? (Float)0.0f : (Float)1.0f) : left;
+  const Float product = opaque ? 0.0f : sigma_a * distance;
+  const Float x = product < 88.0f ? product : 88.0f;  // exp(-88) is below the least normal float
+  const Float lost = fma(sigma_a, distance, -product);
+  const Float k = rint(x * 1.44269504088896341f);
+  const Float y = fma(k, -2.12194440e-4f, fma(k, 0.693359375f, -x)) - lost;
+  Float p = fma(y, 1.9875691500e-4f, 1.3981999507e-3f);
+  p = fma(p, y, 8.3334519073e-3f);
+  p = fma(p, y, 4.1665795894e-2f);
+  p = fma(p, y, 1.6666665459e-1f);
+  p = fma(p, y, 5.0000001201e-1f);
+  const Float less_one = fma(p, y * y, y);
+  const Float t = AS_FLOAT(TO_INT(127.0f - k) << 23) * (less_one + 1.0f);
+  const Float left = t >= 1.17549435e-38f ? t : 0.0f;  // no number, where the product overflowed, counts as 0
+
+  Attenuation a;
+  a.left = opaque ? (distance > 0.0f ? (Float)0.0f : (Float)1.0f) : left;
+  a.taken = opaque ? (distance > 0.0f ? (Float)1.0f : (Float)0.0f) : k == 0.0f ? -less_one : 1.0f - left;
+  return a;
 }
 
-// Fraction absorbed, 1 - transmittance without its cancellation: a count of its own for the balance of power.
-FUNCTION Float absorptance(const Float sigma_a, const Float distance) {
-  const Mask opaque = sigma_a == INFINITY;
-  const Float x = opaque ? 0.0f : sigma_a * distance;
-  // Taylor series of 1 - exp(-x), cut where the next term is below 2^-25 for x < 1/4.
-  Float series = fma(x, 1.0f / 5040.0f, -1.0f / 720.0f);
-  series = fma(x, series, 1.0f / 120.0f);
-  series = fma(x, series, -1.0f / 24.0f);
-  series = fma(x, series, 1.0f / 6.0f);
-  series = fma(x, series, -0.5f);
-  series = fma(x, series, 1.0f);
-  const Float absorbed = x < 0.25f ? x * series : 1.0f - exp(-x);
-  return opaque ? (distance > 0.0f ? (Float)1.0f : (Float)0.0f) : absorbed;
-}
+FUNCTION Float transmittance(const Float sigma_a, const Float distance) { return attenuation(sigma_a, distance).left; }
 
 // sigma_a [1/m] of the worksheet's reflectance rho_d in [0,1]: 1/rho_d - 1, in the form that does not cancel near 1.
 // Its limit at 0 is opaque, by a conditional: no infinity is ever multiplied.

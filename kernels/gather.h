@@ -1,21 +1,15 @@
-// What the ways to gather photons share: the surface that they are gathered for, and what becomes of their sum.
+// The caustic's irradiance at a place, from the photon map: from the photons within a fixed radius (a grid) or from the
+// k nearest (a tree). The SIMD is inside the ray: eight photons at a time.
 #ifndef VITRUM_GATHER_H
 #define VITRUM_GATHER_H
 
-#include "queue.h"
-#include "film.h"
 #include "photon_map.h"
+#include "switches.h"
 
 // Power of photons, eight at a time.
 typedef struct {
   float8 red, green, blue;
 } Sums;
-
-FUNCTION float3 receiver_diffuse(__global const float* scatter, uint stride, uint i) {
-  return triple_at(scatter, SCATTER_DIFFUSE, stride, i);
-}
-
-FUNCTION int is_black(float3 colour) { return colour.x <= 0.0f && colour.y <= 0.0f && colour.z <= 0.0f; }
 
 FUNCTION Sums no_sums(void) {
   Sums sums;
@@ -29,17 +23,21 @@ FUNCTION float sum8(float8 v) {
   return ((v.s0 + v.s4) + (v.s1 + v.s5)) + ((v.s2 + v.s6) + (v.s3 + v.s7));
 }
 
-// The irradiance sums * per_area, and rho_d / pi of it as radiance.
-FUNCTION void add_caustic(const Sums* sums, float per_area, float3 diffuse, __global float* shares, uint stride,
-                          uint i) {
-  const float3 power = (float3)(sum8(sums->red), sum8(sums->green), sum8(sums->blue));
-  const float3 radiance = diffuse * power * (per_area * 0.318309886183790672f);
-  shares[(SHARE_BEAUTY + 0) * stride + i] += radiance.x;
-  shares[(SHARE_BEAUTY + 1) * stride + i] += radiance.y;
-  shares[(SHARE_BEAUTY + 2) * stride + i] += radiance.z;
-  shares[(SHARE_CAUSTICS + 0) * stride + i] += radiance.x;
-  shares[(SHARE_CAUSTICS + 1) * stride + i] += radiance.y;
-  shares[(SHARE_CAUSTICS + 2) * stride + i] += radiance.z;
-}
+FUNCTION float3 total_power(const Sums* sums) { return (float3)(sum8(sums->red), sum8(sums->green), sum8(sums->blue)); }
+
+#if CAUSTICS == CAUSTICS_NEAREST
+#include "gather_nearest.h"
+#elif CAUSTICS == CAUSTICS_WITHIN
+#include "gather_within.h"
+#else
+typedef struct {
+  uint count;                  // 0
+} PhotonMap;
+#define PHOTON_MAP_PARAMETERS
+#define PHOTON_MAP { 0 }
+#endif
+
+// A kernel lists `PHOTON_MAP_PARAMETERS` and starts with `const PhotonMap map = PHOTON_MAP;`. The host sets the arguments
+// in the same order (src/render/photon_pass.cpp).
 
 #endif

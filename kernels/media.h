@@ -69,10 +69,14 @@ FUNCTION Vec3 media_transmittance(const Scene scene, const uint stack, const Flo
                    transmittance(sigma_a[2], distance));
 }
 
-FUNCTION Vec3 media_absorptance(const Scene scene, const uint stack, const Float distance) {
+// What is left and what is taken after `distance`.
+FUNCTION void media_attenuation(const Scene scene, const uint stack, const Float distance, Vec3* left_over, Vec3* taken) {
   __global const float* sigma_a = scene.media[top_medium(stack)].sigma_a;
-  return make_vec3(absorptance(sigma_a[0], distance), absorptance(sigma_a[1], distance),
-                   absorptance(sigma_a[2], distance));
+  const Attenuation red = attenuation(sigma_a[0], distance);
+  const Attenuation green = attenuation(sigma_a[1], distance);
+  const Attenuation blue = attenuation(sigma_a[2], distance);
+  *left_over = make_vec3(red.left, green.left, blue.left);
+  *taken = make_vec3(red.taken, green.taken, blue.taken);
 }
 
 #endif

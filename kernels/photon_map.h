@@ -1,8 +1,9 @@
 // The photon map: photons as they are stored, and the grid that they are sorted into.
 //
-// Unsorted, a photon is one float8 {x, y, z, direction, power r, g, b, -}, so that moving it costs one cache line.
-// Sorted, the map is a structure of arrays, field f of photon i at [f * stride + i], so that eight neighbours are read
-// at once.
+// As they are stored, each run (stages/photons.cl) has a piece of the map of its own, field f of photon i of run r at
+// [photon_in_run(run_length, r, f) + i]. Between two steps of the sort, a photon is one float8 of its fields, so that
+// moving it costs one cache line. Sorted, the map is a structure of arrays, field f of photon i at [f * stride + i], so
+// that eight neighbours are read at once.
 //
 // The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
 // far photons cost nothing but a failed test of distance. Of the 3 x 3 x 3 cells around a place each is visited once,
@@ -22,6 +23,14 @@
 #define PHOTON_DIRECTION 3     // uint: packed
 #define PHOTON_POWER 4         // 3 floats [W]
 #define PHOTON_FIELDS 7
+#define PHOTON_CELL 7          // uint: of the grid; between the steps of the sort only
+#define PHOTON_ROW 8
+
+// Runs have room for a packet beyond their photons, so that packets may be written whole.
+#define RUN_MARGIN 16u
+FUNCTION ulong photon_in_run(uint run_length, uint run, uint field) {
+  return ((ulong)run * PHOTON_ROW + field) * (run_length + RUN_MARGIN);
+}
 
 // Cell size [m] as its inverse; log2 of the number of cells along each axis.
 typedef struct {
@@ -50,9 +59,11 @@ typedef struct {
 
 #ifdef __OPENCL_VERSION__
 
-FUNCTION int cell_coordinate(float x, float inverse_cell) {
-  // Far away, cells are told apart no longer, which only makes candidates.
-  return (int)floor(clamp(x * inverse_cell, -1e9f, 1e9f));
+// Far away, cells are told apart no longer, which only makes candidates.
+FUNCTION int cell_coordinate(float x, float inverse_cell) { return (int)floor(clamp(x * inverse_cell, -1e9f, 1e9f)); }
+FUNCTION uint8 cell_coordinates(float8 x, float inverse_cell) {
+  const float8 cell = floor(x * inverse_cell);
+  return as_uint8(convert_int8(cell > 1e9f ? 1e9f : cell < -1e9f ? -1e9f : cell));
 }
 
 FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
@@ -61,21 +72,22 @@ FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
   return ((z << grid.log2_y) | y) << grid.log2_x;
 }
 
-FUNCTION uint cell_of(const GridData grid, float x, float y, float z) {
-  const uint ix = (uint)cell_coordinate(x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
-  return row_of_cells(grid, cell_coordinate(y, grid.inverse_cell), cell_coordinate(z, grid.inverse_cell)) | ix;
+// The cells of eight places.
+FUNCTION uint8 cells_of(const GridData grid, float8 x, float8 y, float8 z) {
+  const uint8 ix = cell_coordinates(x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
+  const uint8 iy = cell_coordinates(y, grid.inverse_cell) & ((1u << grid.log2_y) - 1u);
+  const uint8 iz = cell_coordinates(z, grid.inverse_cell) & ((1u << grid.log2_z) - 1u);
+  return ((iz << grid.log2_y) | iy) << grid.log2_x | ix;
 }
 
 // Steps to the first and to the last of the cells around one along an axis of 2^log2 cells, each cell once.
 FUNCTION int first_neighbour(uint log2) { return log2 >= 2 ? -1 : 0; }
 FUNCTION int last_neighbour(uint log2) { return log2 >= 1 ? 1 : 0; }
 
-// A unit direction in 10 bits a component, enough to tell which side of a surface it comes from.
-FUNCTION uint packed_direction(float x, float y, float z) {
-  const uint a = (uint)((int)rint(clamp(x, -1.0f, 1.0f) * 511.0f) & 1023);
-  const uint b = (uint)((int)rint(clamp(y, -1.0f, 1.0f) * 511.0f) & 1023);
-  const uint c = (uint)((int)rint(clamp(z, -1.0f, 1.0f) * 511.0f) & 1023);
-  return a | b << 10 | c << 20;
+// Unit directions in 10 bits a component, enough to tell which side of a surface they come from.
+FUNCTION Uint packed_component(Float x) { return AS_UINT(TO_INT(rint(x * 511.0f))) & 1023u; }
+FUNCTION Uint packed_direction(const Vec3 d) {
+  return packed_component(d.x) | packed_component(d.y) << 10 | packed_component(d.z) << 20;
 }
 
 // A photon counts for a surface if it came to the surface's front, and lies within this share of the radius off its

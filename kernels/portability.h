@@ -14,7 +14,10 @@
 #ifdef __OPENCL_VERSION__
 
 #pragma OPENCL FP_CONTRACT OFF
-#define FUNCTION inline __attribute__((always_inline))
+// static, so that no copy of each function is compiled for itself beside those that are inlined.
+#define FUNCTION static inline __attribute__((always_inline))
+// The body of a kernel. PoCL compiles a kernel three times over, but what it calls only once.
+#define BODY static __attribute__((noinline)) void
 // ulong8 passes between functions in another way with AVX-512 than without: no matter, since all of them are inlined.
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wpsabi"
@@ -41,9 +44,9 @@ typedef ulong Ulong;
 #define AS_INT(x) as_int(x)
 #define LOAD(array, i) ((array)[i])
 #define STORE(array, i, value) ((array)[i] = (value))
-#define ANY(mask) ((mask) != 0)
 #define LANES 0u
 #define LANE(value, type, lane) (value)
+#define SET_LANE(value, type, lane, to) ((value) = (to))
 #define GATHER(type, array, i) ((array)[i])
 #else
 typedef JOIN(float, WIDTH) Float;
@@ -60,26 +63,38 @@ typedef JOIN(ulong, WIDTH) Ulong;
 #define AS_INT(x) JOIN(as_int, WIDTH)(x)
 #define LOAD(array, i) JOIN(vload, WIDTH)(0, (array) + (i))
 #define STORE(array, i, value) JOIN(vstore, WIDTH)((value), 0, (array) + (i))
-#define ANY(mask) any(mask)
 #define LANE(value, type, lane) (((const type*)&(value))[lane])
-#define GATHER_4(a, i) (a)[(i).s0], (a)[(i).s1], (a)[(i).s2], (a)[(i).s3]
-#define GATHER_8(a, i) GATHER_4(a, i), (a)[(i).s4], (a)[(i).s5], (a)[(i).s6], (a)[(i).s7]
+#define SET_LANE(value, type, lane, to) (((type*)&(value))[lane] = (to))
 #if WIDTH == 4
 #define LANES ((Uint)(0, 1, 2, 3))
-#define GATHER(type, a, i) ((type)(GATHER_4(a, i)))
 #elif WIDTH == 8
 #define LANES ((Uint)(0, 1, 2, 3, 4, 5, 6, 7))
-#define GATHER(type, a, i) ((type)(GATHER_8(a, i)))
 #else
 #define LANES ((Uint)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
-#define GATHER(type, a, i)                                                                                            \
-  ((type)(GATHER_8(a, i), (a)[(i).s8], (a)[(i).s9], (a)[(i).sa], (a)[(i).sb], (a)[(i).sc], (a)[(i).sd], (a)[(i).se], \
-          (a)[(i).sf]))
 #endif
+// array[i] in each lane, of floats or uints; i below 2^31. One instruction where the processor has it: spelt out, it is a
+// hundred for the compiler to chew on.
+#define GATHER(type, array, i) JOIN(GATHER_, type)(array, i)
+#define GATHER_Float(array, i) gathered((array), (i))
+#define GATHER_Uint(array, i) AS_UINT(gathered((__global const float*)(array), (i)))
+static inline __attribute__((always_inline)) Float gathered(__global const float* array, const Uint i) {
+#if WIDTH == 16 && defined(__AVX512F__)
+  return as_float16(__builtin_ia32_gathersiv16sf((Float)(0.0f), (const void*)(ulong)array, as_int16(i), (ushort)0xffff, 4));
+#elif WIDTH == 8 && defined(__AVX2__)
+  return as_float8(__builtin_ia32_gatherd_ps256((Float)(0.0f), (const float*)(ulong)array, as_int8(i),
+                                                as_float8((int8)(-1)), 4));
+#else
+  Float values;
+  for (uint lane = 0; lane < WIDTH; ++lane) ((float*)&values)[lane] = array[((const uint*)&i)[lane]];
+  return values;
+#endif
+}
 #endif
 
 #else  // C++
 #define FUNCTION inline
+#define AS_FLOAT(x) std::bit_cast<float>(x)
+#define TO_INT(x) static_cast<int>(x)
 #endif
 
 typedef struct {
@@ -121,17 +136,49 @@ FUNCTION Float smaller(Float a, Float b) { return a < b ? a : b; }
 FUNCTION Float magnitude(Float a) { return larger(a, -a); }
 
 #ifdef __OPENCL_VERSION__
-// The first lane of a mask that is set somewhere.
-FUNCTION uint first_lane(const Mask mask) {
+// A bit for each lane of a mask that is set.
+FUNCTION uint lane_bits(const Mask mask) {
 #if WIDTH == 1
-  return 0;
+  return mask != 0;
+#elif WIDTH == 16 && defined(__AVX512DQ__)
+  return (ushort)__builtin_ia32_cvtd2mask512(mask);
 #elif WIDTH == 8 && defined(__AVX__)
-  return (uint)__builtin_ctz((uint)__builtin_ia32_movmskps256(as_float8(mask)));
+  return (uint)__builtin_ia32_movmskps256(as_float8(mask));
 #else
-  uint lane = 0;
-  while (lane < WIDTH - 1 && LANE(mask, int, lane) == 0) ++lane;
-  return lane;
+  uint bits = 0;
+  for (uint lane = 0; lane < WIDTH; ++lane) bits |= LANE(mask, int, lane) != 0 ? 1u << lane : 0u;
+  return bits;
 #endif
+}
+
+#define ANY(mask) (lane_bits(mask) != 0)
+FUNCTION uint lowest_bit(const uint bits) { return 31u - clz(bits & (0u - bits)); }
+FUNCTION uint first_lane(const Mask mask) { return lowest_bit(lane_bits(mask)); }
+FUNCTION uint lanes_set(const Mask mask) { return popcount(lane_bits(mask)); }
+// Goes through the lanes of a mask that are set.
+#define FOR_LANES(lane, mask) \
+  for (uint bits_ = lane_bits(mask), lane = lowest_bit(bits_); bits_ != 0; bits_ &= bits_ - 1, lane = lowest_bit(bits_))
+
+// Writes the lanes of `which` side by side, and anything behind them, WIDTH values at most.
+#if WIDTH == 16 && defined(__AVX512F__)
+#define PACKS_LANES 1
+FUNCTION void pack_lanes(const Mask which, const Float value, __global float* to) {
+  STORE(to, 0, as_float16(__builtin_ia32_compresssf512_mask(value, value, (ushort)lane_bits(which))));
+}
+#else
+#define PACKS_LANES 0
+#endif
+
+// The lanes that hold one of `count` entries.
+FUNCTION Mask lanes_below(uint first, uint count) { return LANES + first < count; }
+
+// One lane of a Vec3.
+#define LANE3(v, lane) ((float3)(LANE((v).x, float, lane), LANE((v).y, float, lane), LANE((v).z, float, lane)))
+
+FUNCTION void set_lane3(Vec3* v, uint lane, float3 to) {
+  SET_LANE(v->x, float, lane, to.x);
+  SET_LANE(v->y, float, lane, to.y);
+  SET_LANE(v->z, float, lane, to.z);
 }
 #endif
 

@@ -29,16 +29,16 @@ FUNCTION Uint hash_pair(Uint a, Uint b) { return hash32(a ^ (hash32(b) + 0x9e377
 // The top 24 bits as a float in [0, 1).
 FUNCTION Float unit_float(Uint bits) { return TO_FLOAT(AS_INT(bits >> 8)) * 5.9604644775390625e-8f; }
 
-FUNCTION Uint sequence_bits(__global const SequenceData* sequence, Uint i) {
+// Numbers `first` to `first + WIDTH` of a sequence.
+FUNCTION Uint sequence_bits(__global const SequenceData* sequence, const uint first) {
   const ulong start = sequence->start;
   const ulong alpha = sequence->alpha;
-  if (alpha == 0) return hash_pair((Uint)(uint)(start >> 32), hash_pair((Uint)(uint)start, i));
-  const Ulong low = start + TO_ULONG(i) * (alpha & 0xffffffffu);
-  return TO_UINT(low >> 32) + i * (uint)(alpha >> 32);
+  if (alpha == 0) return hash_pair((Uint)(uint)(start >> 32), hash_pair((Uint)(uint)start, LANES + first));
+  return TO_UINT((start + first * alpha + TO_ULONG(LANES) * alpha) >> 32);
 }
 
-FUNCTION Float sequence_float(__global const SequenceData* sequence, Uint i) {
-  return unit_float(sequence_bits(sequence, i));
+FUNCTION Float sequence_float(__global const SequenceData* sequence, const uint first) {
+  return unit_float(sequence_bits(sequence, first));
 }
 
 // sin and cos of 2 pi u for u in [0,1), within 2 ulp of 1, the same on every device.

@@ -1,8 +1,8 @@
-// What lies where a ray has hit: place, normals, material, reflectance.
+// What lies where rays have hit: place, normals, material, reflectance.
 #ifndef VITRUM_SURFACE_H
 #define VITRUM_SURFACE_H
 
-#include "queue.h"
+#include "packet.h"
 #include "scene.h"
 #include "texture.h"
 
@@ -10,45 +10,49 @@
 // worst case of a barycentric sum and a projection, doubled for the next ray's own intersection.
 #define SURFACE_ROUNDING 1.4e-6f
 
+// A ray leaves a mesh after error / cosine [m], the cosine to the facet's normal, and at grazing angles no later than this.
+#define LEAST_COSINE 0.03f
+
 typedef struct {
-  Float t;                     // [m], INFINITY: nothing
-  Vec3 position, geometric_normal, shading_normal;
-  Uint material, from;
-#if HAS_CONTACTS
-  Uint contacts;
+  Float t;                     // [m], INFINITY: nothing is met
+  Vec3 position;               // [m], put back on the surface
+  Vec3 geometric_normal;       // unit length, outwards
+#if HAS_MESH
+  Vec3 shading_normal;         // unit length, on the same side
 #endif
-  Float error;
+  Uint material;
+  Uint from;                   // exact shape, for the rays that leave; NO_INDEX on a mesh
+#if HAS_TEXTURES
+  Float u, v;                  // texture coordinates; NaN: none
+#endif
+#if HAS_CONTACTS
+  Uint contacts;               // borders in contact behind this one (contacts.h)
+#endif
+  Float error;                 // [m]: bound of the distance between the position and the true surface
 } SurfacePacket;
 
-FUNCTION SurfacePacket load_surfaces(__global const float* surfaces, uint stride, uint i) {
-  SurfacePacket s;
-  s.t = load1(surfaces, SURFACE_T, stride, i);
-  s.position = load3(surfaces, SURFACE_POSITION, stride, i);
-  s.geometric_normal = load3(surfaces, SURFACE_NORMAL, stride, i);
+FUNCTION Vec3 shading_normal(const SurfacePacket* surface) {
 #if HAS_MESH
-  s.shading_normal = load3(surfaces, SURFACE_SHADING, stride, i);
+  return surface->shading_normal;
 #else
-  s.shading_normal = s.geometric_normal;
+  return surface->geometric_normal;
 #endif
-  s.material = load_bits(surfaces, SURFACE_MATERIAL, stride, i);
-  s.error = load1(surfaces, SURFACE_ERROR, stride, i);
-  s.from = load_bits(surfaces, SURFACE_FROM, stride, i);
-#if HAS_CONTACTS
-  s.contacts = load_bits(surfaces, SURFACE_CONTACTS, stride, i);
-#endif
-  return s;
 }
 
-// rho_d of lanes that share a material: the texel where there is a texture and the place has coordinates (no NaN).
+// Does the material scatter light, if only in places?
+FUNCTION int is_diffuse(__global const MaterialData* material) {
+  return material->texture != NO_INDEX || material->diffuse[0] > 0.0f || material->diffuse[1] > 0.0f ||
+         material->diffuse[2] > 0.0f;
+}
+
+// rho_d of lanes that share a material: the texel where there is a texture and the place has coordinates.
 FUNCTION Vec3 diffuse_reflectance(const Scene scene, __global const MaterialData* material,
-                                  __global const float* surfaces, uint stride, uint i) {
+                                  const SurfacePacket* surface) {
   const Vec3 rho_d = uniform3(material->diffuse);
 #if HAS_TEXTURES
   if (material->texture != NO_INDEX) {
-    const Float u = load1(surfaces, SURFACE_U, stride, i);
-    const Vec3 texel =
-        texture_value(scene, &scene.textures[material->texture], u, load1(surfaces, SURFACE_V, stride, i));
-    return select3(u == u, material->texture_replaces ? texel : multiply3(texel, rho_d), rho_d);
+    const Vec3 texel = texture_value(scene, &scene.textures[material->texture], surface->u, surface->v);
+    return select3(surface->u == surface->u, material->texture_replaces ? texel : multiply3(texel, rho_d), rho_d);
   }
 #endif
   return rho_d;
@@ -56,9 +60,13 @@ FUNCTION Vec3 diffuse_reflectance(const Scene scene, __global const MaterialData
 
 // Where hits of a ray that leaves along `direction` begin. On an exact shape the shape itself is told by `from`, so
 // the bound serves its neighbours only; on a mesh the ray must get clear of the facet and of those that share its edge.
-FUNCTION Float leaving_t_min(const SurfacePacket surface, const Vec3 direction) {
-  const Float cosine = magnitude(dot3(direction, surface.geometric_normal));
-  return surface.from == NO_INDEX ? surface.error / larger(cosine, LEAST_COSINE) : surface.error;
+FUNCTION Float leaving_t_min(const SurfacePacket* surface, const Vec3 direction) {
+#if HAS_MESH
+  const Float cosine = magnitude(dot3(direction, surface->geometric_normal));
+  return surface->from == NO_INDEX ? surface->error / larger(cosine, LEAST_COSINE) : surface->error;
+#else
+  return surface->error;
+#endif
 }
 
 #endif

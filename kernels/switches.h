@@ -24,6 +24,19 @@
 #ifndef HAS_HIGHLIGHTS
 #error "HAS_HIGHLIGHTS: 1 if any surface has a Phong term"
 #endif
+#ifndef HAS_DIRECT_LIGHT
+#error "HAS_DIRECT_LIGHT: 1 if lights shine on what scatters"
+#endif
+// How the photon map is gathered.
+#define CAUSTICS_NONE 0
+#define CAUSTICS_WITHIN 1
+#define CAUSTICS_NEAREST 2
+#ifndef CAUSTICS
+#error "CAUSTICS: one of CAUSTICS_..."
+#endif
+#ifndef CAMERA_STACK
+#error "CAMERA_STACK: packets of camera rays that may wait, at least the greatest depth and one more"
+#endif
 #ifndef LIGHT_KINDS
 #error "LIGHT_KINDS: a bit set of the kinds of light in the scene, 1 << LIGHT_..."
 #endif

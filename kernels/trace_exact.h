@@ -5,10 +5,9 @@
 #include "exact.h"
 #include "surface.h"
 
-// WIDTH rays at a time. Shapes are numbered spheres first, then flats; `from` is the one that a ray leaves, or NO_INDEX.
-// `tex_u`, `tex_v`: texture coordinates. A ray that meets nothing has t = INFINITY and the background's material 0.
-FUNCTION SurfacePacket trace_exact_shapes(const Scene scene, const RayPacket packet, const Uint from, Float* tex_u,
-                                          Float* tex_v) {
+// Shapes are numbered spheres first, then flats; `from` is the one that a ray leaves, or NO_INDEX. A ray that meets
+// nothing has t = INFINITY and the background's material 0. Texture coordinates only where they are `textured`.
+FUNCTION SurfacePacket trace_exact(const Scene scene, const RayPacket packet, const Uint from, const int textured) {
   Float t = INFINITY;
   Uint shape = NO_INDEX;
   Float u = 0.0f;
@@ -20,7 +19,7 @@ FUNCTION SurfacePacket trace_exact_shapes(const Scene scene, const RayPacket pac
     shape = closer ? s : shape;
   }
   for (uint f = 0; f < scene.n_flats; ++f) {
-    const FlatHit flat = flat_hit(&scene.flats[f], packet, from == scene.n_spheres + f);
+    const FlatHit flat = flat_hit(&scene.flats[f], packet, from == scene.n_spheres + f, textured);
     const Mask closer = flat.t < t;
     t = closer ? flat.t : t;
     shape = closer ? scene.n_spheres + f : shape;
@@ -34,8 +33,10 @@ FUNCTION SurfacePacket trace_exact_shapes(const Scene scene, const RayPacket pac
   Vec3 normal = make_vec3(0.0f, 1.0f, 0.0f);
   Uint material = 0;
   Float extent = 0.0f;
-  *tex_u = 0.0f;
-  *tex_v = 0.0f;
+#if HAS_TEXTURES
+  Float tex_u = 0.0f;
+  Float tex_v = 0.0f;
+#endif
   for (uint s = 0; s < scene.n_spheres; ++s) {
     const Mask here = shape == s;
     if (!ANY(here)) continue;
@@ -47,9 +48,14 @@ FUNCTION SurfacePacket trace_exact_shapes(const Scene scene, const RayPacket pac
     material = here ? scene.spheres[s].material : material;
     extent = here ? radius : extent;
 #if HAS_TEXTURES
-    // Longitude from -x over +z, latitude from the south pole.
-    *tex_u = here ? fma(atan2(-n.z, n.x), (Float)0.15915494309189534f, (Float)0.5f) : *tex_u;
-    *tex_v = here ? fma(asin(clamp(n.y, (Float)-1.0f, (Float)1.0f)), (Float)0.3183098861837907f, (Float)0.5f) : *tex_v;
+    if (textured && scene.materials[scene.spheres[s].material].texture != NO_INDEX) {
+      // Longitude from -x over +z, latitude from the south pole.
+      FOR_LANES(lane, here) {
+        const float3 up = LANE3(n, lane);
+        SET_LANE(tex_u, float, lane, fma(atan2(-up.z, up.x), 0.15915494309189534f, 0.5f));
+        SET_LANE(tex_v, float, lane, fma(asin(clamp(up.y, -1.0f, 1.0f)), 0.3183098861837907f, 0.5f));
+      }
+    }
 #endif
   }
   for (uint f = 0; f < scene.n_flats; ++f) {
@@ -60,17 +66,25 @@ FUNCTION SurfacePacket trace_exact_shapes(const Scene scene, const RayPacket pac
     normal = select3(here, n, normal);
     position = select3(here, along3(reached, -dot3(n, subtract3(reached, uniform3(flat->point))), n), position);
     material = here ? flat->material : material;
-    *tex_u = here ? fma(u, (Float)flat->texcoord[2], fma(v, (Float)flat->texcoord[4], (Float)flat->texcoord[0])) : *tex_u;
-    *tex_v = here ? fma(u, (Float)flat->texcoord[3], fma(v, (Float)flat->texcoord[5], (Float)flat->texcoord[1])) : *tex_v;
+#if HAS_TEXTURES
+    tex_u = here ? fma(u, (Float)flat->texcoord[2], fma(v, (Float)flat->texcoord[4], (Float)flat->texcoord[0])) : tex_u;
+    tex_v = here ? fma(u, (Float)flat->texcoord[3], fma(v, (Float)flat->texcoord[5], (Float)flat->texcoord[1])) : tex_v;
+#endif
   }
 
   SurfacePacket surface;
   surface.t = t;
   surface.position = position;
   surface.geometric_normal = normal;
+#if HAS_MESH
   surface.shading_normal = normal;
+#endif
   surface.material = material;
   surface.from = shape;
+#if HAS_TEXTURES
+  surface.u = tex_u;
+  surface.v = tex_v;
+#endif
   surface.error = SURFACE_ROUNDING * larger(extent, larger(largest3(position), largest3(packet.origin)));
 #if HAS_CONTACTS
   surface.contacts = 0;

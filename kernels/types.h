@@ -125,6 +125,14 @@ typedef struct {
   uint width, height;          // pixels
 } CameraData;
 
+// One sample of all pixels: what differs between its pixels follows from these and the pixel.
+typedef struct {
+  uint seed;                   // of the paths
+  float x, y;                  // point of a sequence in the pixel
+  float light_u, light_v;      // and on area lights
+  float light_face;            // and for the face of a mesh light
+} CameraSample;
+
 // What refracts or mirrors, by its bounding sphere: photons are aimed at it.
 typedef struct {
   float centre[3];

@@ -8,11 +8,13 @@
 #include "core/version.hpp"
 
 int main(int argc, char** argv) {
+  int exit_code = 0;
   CLI::App app("vitrum renders glass: transparent, glossy and absorbing objects with their caustics, on OpenCL devices.",
                "vitrum");
   app.set_version_flag("--version", std::string("vitrum ") + vitrum::version());
   app.require_subcommand(1);
   vitrum::add_render_command(app);
+  vitrum::add_compare_command(app, exit_code);
   vitrum::add_info_command(app);
   vitrum::add_devices_command(app);
   app.footer("First steps:\n  vitrum render models/default_scene/scene.toml -o picture.png\n  vitrum render --help");
@@ -32,5 +34,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "vitrum: error: %s; this should not happen, please report it\n", error.what());
     return 1;
   }
-  return 0;
+  return exit_code;
 }

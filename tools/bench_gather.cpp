@@ -57,8 +57,8 @@ void run(size_t n_photons, const KernelFiles& kernels) {
     gatherer.within(photons, queries, radius);
     gatherer.nearest(photons, queries, k, 1.0f);
     std::map<std::string, double> after = gatherer.seconds();
-    within_seconds = std::min(within_seconds, after["gather"] - before["gather"]);
-    nearest_seconds = std::min(nearest_seconds, after["gather_nearest"] - before["gather_nearest"]);
+    within_seconds = std::min(within_seconds, after["within"] - before["within"]);
+    nearest_seconds = std::min(nearest_seconds, after["nearest"] - before["nearest"]);
     before = after;
   }
   std::printf("%zu photons: tree built in %.3f s; Mqueries/s: fixed radius %.2f, %zu nearest %.3f", n_photons, build,

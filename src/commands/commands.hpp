@@ -5,8 +5,13 @@
 
 namespace vitrum {
 
+/// How vitrum ends when it has done what it was asked for, and a threshold is exceeded; 1 is for errors, 2 for usage.
+constexpr int exit_exceeded = 3;
+
 /// `vitrum render SCENE -o FILE ...`
 void add_render_command(CLI::App& app);
+/// `vitrum compare A B`; sets `exit_code` to exit_exceeded if a threshold is exceeded.
+void add_compare_command(CLI::App& app, int& exit_code);
 /// `vitrum info SCENE`
 void add_info_command(CLI::App& app);
 /// `vitrum devices`

@@ -113,8 +113,9 @@ void run_info(const SceneArguments& arguments) {
   const double pixels = static_cast<double>(scene.film.width) * scene.film.height;
   std::printf(", film %.3f MiB", pixels * FILM_PLANES * sizeof(float) / 0x1p20);
   if (features.caustics) {
-    // Of one pass: as stored, in rows of the sort, and sorted; or with a node to seven leaves or nodes of eight photons.
-    const double floats = 8 + PHOTON_FIELDS + (features.nearest_photons ? PHOTON_NODE_ROWS / 7.0 : 8.0);
+    // Of one pass: as stored and in rows of the sort; or in a tree, with a node to seven leaves or nodes of eight photons.
+    const double floats =
+        PHOTON_ROW + (features.nearest_photons ? PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0 : double{PHOTON_ROW});
     const double photons = std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
     std::printf(", photon map up to %.1f MiB", photons * (sizeof(float) * floats) / 0x1p20);
   }

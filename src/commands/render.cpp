@@ -4,9 +4,9 @@
 #include <chrono>
 #include <filesystem>
 #include <future>
-#include <set>
 
 #include "commands/commands.hpp"
+#include "commands/outputs.hpp"
 #include "commands/report.hpp"
 #include "commands/scene_arguments.hpp"
 #include "commands/usage.hpp"
@@ -53,23 +53,6 @@ PictureLayer layer_of(const Film& film, View view) {
   return layer;
 }
 
-/// Throws Error for an output that cannot be written, or that another one would overwrite.
-void check_outputs(const RenderArguments& arguments) {
-  std::set<std::filesystem::path> files;
-  const auto check_alone = [&files](const std::string& output) {
-    if (!files.insert(std::filesystem::weakly_canonical(output)).second)
-      throw Error({output}, "this file is to be written twice", "give every picture and the report a name of its own");
-  };
-  for (const std::string& output : arguments.outputs) {
-    check_writable(output);
-    check_alone(output);
-  }
-  if (!arguments.report.empty()) {
-    check_whole_file(arguments.report);
-    check_alone(arguments.report);
-  }
-}
-
 /// The views in the order given. Throws Error for one that is none, or is there already.
 std::vector<View> views_of_names(const std::vector<std::string>& names) {
   std::vector<View> views;
@@ -91,7 +74,7 @@ void run_render(const RenderArguments& arguments) {
   if (!arguments.views.empty()) options.views = views_of_names(arguments.views);
   const auto threads = static_cast<unsigned>(whole_number("--threads", arguments.threads, 0, most_threads));
   const auto group_size = static_cast<unsigned>(whole_number("--group-size", arguments.group_size, 1, largest_group));
-  check_outputs(arguments);
+  check_outputs(arguments.outputs, arguments.report);
   if (!options.kernels.folder.empty() && !std::filesystem::is_directory(options.kernels.folder))
     throw Error({"--kernels " + options.kernels.folder}, "there is no such folder",
                 "name the folder kernels/ of vitrum's sources");

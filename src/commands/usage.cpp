@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "core/suggest.hpp"
@@ -48,6 +50,19 @@ uint64_t whole_number(const std::string& option, const std::string& text, uint64
   if (!is_number || fault != std::errc() || number < least || number > most)
     throw Error({option + " " + text}, is_number ? "this number is out of range" : "this is no whole number",
                 "write digits only, for a number from " + std::to_string(least) + " to " + std::to_string(most));
+  return number;
+}
+
+double real_number(const std::string& place, const std::string& text, double least, double most) {
+  double number = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = fault == std::errc() && end == text.data() + text.size() && !std::isnan(number);
+  if (!is_number || number < least || number > most) {
+    char range[80];
+    std::snprintf(range, sizeof range, "from %g to %g", least, most);
+    throw Error({place}, is_number ? "this number is out of range" : "this is no number",
+                std::string("write a number ") + range + ", as in 0.001 or 1e-3");
+  }
   return number;
 }
 

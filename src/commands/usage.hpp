@@ -15,4 +15,7 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error);
 /// The whole number of `text`, from `least` to `most`. Throws Error at "OPTION TEXT" for anything else.
 uint64_t whole_number(const std::string& option, const std::string& text, uint64_t least, uint64_t most);
 
+/// The number of `text`, from `least` to `most`, as in "0.001" or "1e-3". Throws Error at `place` for anything else.
+double real_number(const std::string& place, const std::string& text, double least, double most);
+
 }  // namespace vitrum

@@ -2,6 +2,7 @@
 // The kernels' shared headers compiled as C++, in namespace vitrum::kernel: structs of the buffers, field numbers, and
 // fresnel.cl for the tests. One lane wide.
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -13,15 +14,14 @@ using Float = float;
 using Int = int;
 using Mask = bool;
 using Uint = uint32_t;
-using std::exp;
 using std::fma;
+using std::rint;
 using std::sqrt;
 
 #include "film.h"
 #include "fresnel.cl"
 #include "outcome.h"
 #include "photon_map.h"
-#include "queue_fields.h"
 #include "sequence.h"
 #include "types.h"
 
@@ -34,5 +34,7 @@ static_assert(sizeof(LightData) == 96);
 static_assert(sizeof(LightFace) == 32);
 static_assert(sizeof(TextureData) == 48);
 static_assert(sizeof(CameraData) == 72);
+static_assert(sizeof(CameraSample) == 24);
+static_assert(sizeof(PhotonRunData) == 176);
 
 }  // namespace vitrum::kernel

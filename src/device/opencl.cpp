@@ -189,9 +189,10 @@ void Device::read_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, v
   }
 }
 
-void Device::read_strided_bytes(const cl::Buffer& buffer, size_t bytes, size_t stride, size_t count, void* data) {
+void Device::read_strided_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, size_t stride, size_t count,
+                                void* data) {
   try {
-    queue_.enqueueReadBufferRect(buffer, CL_TRUE, {0, 0, 0}, {0, 0, 0}, {bytes, count, 1}, stride, 0, bytes, 0, data);
+    queue_.enqueueReadBufferRect(buffer, CL_TRUE, {offset, 0, 0}, {0, 0, 0}, {bytes, count, 1}, stride, 0, bytes, 0, data);
   } catch (const cl::Error& error) {
     fail(error, "copying from the device", "another device may do better (--device)");
   }
@@ -202,16 +203,6 @@ void Device::fill_zero_bytes(const cl::Buffer& buffer, size_t bytes) {
     queue_.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes);
   } catch (const cl::Error& error) {
     fail(error, "clearing device memory", "another device may do better (--device)");
-  }
-}
-
-cl::Buffer Device::sub_buffer(const cl::Buffer& buffer, size_t offset, size_t bytes) {
-  try {
-    const cl_buffer_region region = {offset, bytes};
-    cl::Buffer parent = buffer;
-    return parent.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region);
-  } catch (const cl::Error& error) {
-    fail(error, "dividing device memory", "another device may do better (--device)");
   }
 }
 

@@ -95,24 +95,18 @@ class Device {
     if (count > 0) read_bytes(buffer.cl(), first * sizeof(T), count * sizeof(T), values.data());
     return values;
   }
-  /// Every `step`-th value from the first on, `count` of them.
+  /// `count` times `length` values, a piece every `step` values from value `first` on.
   template <typename T>
-  std::vector<T> read_strided(const Buffer<T>& buffer, size_t step, size_t count) {
-    std::vector<T> values(count);
-    if (count > 0) read_strided_bytes(buffer.cl(), sizeof(T), step * sizeof(T), count, values.data());
+  std::vector<T> read_strided(const Buffer<T>& buffer, size_t first, size_t length, size_t step, size_t count) {
+    std::vector<T> values(length * count);
+    if (!values.empty())
+      read_strided_bytes(buffer.cl(), first * sizeof(T), length * sizeof(T), step * sizeof(T), count, values.data());
     return values;
   }
   template <typename T>
   void fill_zero(const Buffer<T>& buffer) {
     fill_zero_bytes(buffer.cl(), std::max<size_t>(buffer.size(), 1) * sizeof(T));
   }
-  /// The buffer from value `first` on; `first` a multiple of 1024.
-  template <typename T>
-  Buffer<T> tail(const Buffer<T>& buffer, size_t first) {
-    if (first == 0) return buffer;
-    return {sub_buffer(buffer.cl(), first * sizeof(T), (buffer.size() - first) * sizeof(T)), buffer.size() - first};
-  }
-
   /// Launches `kernel` on `count` work-items (rounded up to whole groups); its time is booked under `stage`.
   void launch(const std::string& stage, const cl::Kernel& kernel, size_t count);
   /// The same for a few work-items that each have much to do: every one is a group, so that threads share them.
@@ -128,9 +122,9 @@ class Device {
   cl::Buffer allocate_bytes(size_t bytes, const char* purpose);
   void write_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, const void* data);
   void read_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, void* data);
-  void read_strided_bytes(const cl::Buffer& buffer, size_t bytes, size_t stride, size_t count, void* data);
+  void read_strided_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, size_t stride, size_t count,
+                          void* data);
   void fill_zero_bytes(const cl::Buffer& buffer, size_t bytes);
-  cl::Buffer sub_buffer(const cl::Buffer& buffer, size_t offset, size_t bytes);
   void collect_timings();
   void launch_groups(const std::string& stage, const cl::Kernel& kernel, size_t count, size_t group_size);
 

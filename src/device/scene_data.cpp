@@ -334,8 +334,8 @@ class Builder {
         d.scale[i] = static_cast<float>(t.scale[i]);
         d.offset[i] = static_cast<float>(t.offset[i]);
       }
-      if (data_.texels.size() / 3 + t.texels.size() > (1u << 30))
-        throw Error(t.where, "the scene's textures hold more than 2^30 texels", "use smaller pictures");
+      if (data_.texels.size() / 3 + t.texels.size() > (1u << 29))
+        throw Error(t.where, "the scene's textures hold more than 2^29 texels", "use smaller pictures");
       for (const glm::vec3& texel : t.texels) data_.texels.insert(data_.texels.end(), {texel.x, texel.y, texel.z});
       data_.textures.push_back(d);
     }

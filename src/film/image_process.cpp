@@ -15,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 extern char** environ;
 
@@ -25,6 +26,8 @@ namespace fs = std::filesystem;
 using namespace image_protocol;
 
 constexpr const char* program_file = "vitrum_images";
+
+constexpr uint64_t max_pixels = uint64_t{1} << 28, max_values = 3 * max_pixels;
 
 static_assert(sizeof(glm::vec3) == 3 * sizeof(float), "pixels come as floats");
 
@@ -255,6 +258,43 @@ ImageAnswer ask(const SourceLocation& asked_by, const std::string& failure, Exch
   }
 }
 
+/// Decodes a picture into what `make_room` gives for its contents and the names of its channels: a span of chars.
+template <typename MakeRoom>
+ImageAnswer decode(const std::string& path, bool wants_all, const SourceLocation& asked_by, MakeRoom make_room) {
+  return ask(asked_by, "the picture '" + path + "' cannot be read", [&](ImageProcess& process) {
+    const DecodeRequest request{max_pixels, max_values, wants_all};
+    // The folder that the process works in is the one that vitrum worked in when it was started.
+    process.send(FrameKind::decode, bytes_of(request), fs::absolute(path).string());
+    bool has_contents = false;
+    std::span<char> unfilled;
+    for (;;) {
+      const FrameHeader frame = process.next_frame();
+      if (frame.kind == FrameKind::contents) {
+        PictureContents contents{};
+        expect(frame.bytes >= sizeof contents && !has_contents);
+        process.receive(&contents, sizeof contents);
+        std::string texts(frame.bytes - sizeof contents, '\0');
+        process.receive(texts.data(), texts.size());
+        const std::vector<std::string> names = split_texts(texts);
+        expect(contents.width > 0 && contents.height > 0 && !names.empty());
+        const uint64_t pixels = static_cast<uint64_t>(contents.width) * static_cast<uint64_t>(contents.height);
+        expect(pixels <= max_pixels && pixels <= max_values / names.size());
+        unfilled = make_room(contents, names);
+        expect(unfilled.size() == pixels * names.size() * sizeof(float));
+        has_contents = true;
+      } else if (frame.kind == FrameKind::rows) {
+        expect(frame.bytes <= unfilled.size());
+        process.receive(unfilled.data(), frame.bytes);
+        unfilled = unfilled.subspan(frame.bytes);
+      } else {
+        const ImageAnswer answer = process.receive_answer(frame);
+        expect(answer.status != Status::ok || (has_contents && unfilled.empty()));
+        return answer;
+      }
+    }
+  });
+}
+
 }  // namespace
 
 void start_image_process() {
@@ -271,35 +311,23 @@ void end_image_process() {
   if (running) running->kill();
 }
 
-ImageAnswer decode_picture(const std::string& path, uint64_t max_pixels, const SourceLocation& asked_by,
-                           Picture& picture) {
-  return ask(asked_by, "the picture '" + path + "' cannot be read", [&](ImageProcess& process) {
-    // The folder that the process works in is the one that vitrum worked in when it was started.
-    process.send(FrameKind::decode, bytes_of(DecodeRequest{max_pixels}), fs::absolute(path).string());
-    std::span<char> unfilled;
-    for (;;) {
-      const FrameHeader frame = process.next_frame();
-      if (frame.kind == FrameKind::size) {
-        PictureSize size{};
-        expect(frame.bytes == sizeof size);
-        process.receive(&size, sizeof size);
-        expect(size.width > 0 && size.height > 0);
-        const uint64_t pixels = static_cast<uint64_t>(size.width) * static_cast<uint64_t>(size.height);
-        expect(pixels <= max_pixels);
-        picture.width = size.width;
-        picture.height = size.height;
-        picture.pixels.resize(pixels);
-        unfilled = {reinterpret_cast<char*>(picture.pixels.data()), pixels * sizeof(glm::vec3)};
-      } else if (frame.kind == FrameKind::rows) {
-        expect(frame.bytes <= unfilled.size());
-        process.receive(unfilled.data(), frame.bytes);
-        unfilled = unfilled.subspan(frame.bytes);
-      } else {
-        const ImageAnswer answer = process.receive_answer(frame);
-        expect(answer.status != Status::ok || (picture.width > 0 && unfilled.empty()));
-        return answer;
-      }
-    }
+ImageAnswer decode_picture(const std::string& path, const SourceLocation& asked_by, Picture& picture) {
+  return decode(path, false, asked_by, [&](const PictureContents& contents, const std::vector<std::string>&) {
+    picture.width = contents.width;
+    picture.height = contents.height;
+    picture.pixels.resize(static_cast<size_t>(contents.width) * static_cast<size_t>(contents.height));
+    return std::span(reinterpret_cast<char*>(picture.pixels.data()), picture.pixels.size() * sizeof(glm::vec3));
+  });
+}
+
+ImageAnswer decode_picture(const std::string& path, const SourceLocation& asked_by, PictureChannels& picture) {
+  return decode(path, true, asked_by, [&](const PictureContents& contents, const std::vector<std::string>& names) {
+    picture.width = contents.width;
+    picture.height = contents.height;
+    picture.is_float = contents.is_float != 0;
+    picture.names = names;
+    picture.values.resize(static_cast<size_t>(contents.width) * static_cast<size_t>(contents.height) * names.size());
+    return std::span(reinterpret_cast<char*>(picture.values.data()), picture.values.size() * sizeof(float));
   });
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "film/images.hpp"
+#include "film/picture_layers.hpp"
 #include "film/vitrum_images/protocol.hpp"
 
 namespace vitrum {
@@ -21,10 +22,11 @@ struct ImageAnswer {
   std::string message;  ///< one line of why it failed, or ""
 };
 
-/// Decodes the file at `path` into `picture` unless it has more than `max_pixels` pixels. Thread-safe.
-/// Throws Error at `asked_by` if there is no process, or if it ends meanwhile.
-ImageAnswer decode_picture(const std::string& path, uint64_t max_pixels, const SourceLocation& asked_by,
-                           Picture& picture);
+/// Decodes the file at `path` into `picture`, as RGB or with all its channels, unless it has more than 2^28 pixels, or
+/// that would be more than 3 * 2^28 values. Thread-safe.
+/// Throws Error at `asked_by` if there is no process, or if it ends meanwhile; std::bad_alloc if there is no room.
+ImageAnswer decode_picture(const std::string& path, const SourceLocation& asked_by, Picture& picture);
+ImageAnswer decode_picture(const std::string& path, const SourceLocation& asked_by, PictureChannels& picture);
 
 /// Encodes a picture as `file`; `texts` and `values` are those that image_protocol::EncodeRequest lists. Thread-safe.
 /// Throws Error at {path} if there is no process, or if it ends meanwhile.

@@ -21,9 +21,32 @@
 namespace vitrum {
 namespace {
 
+using image_protocol::append_text;
 using image_protocol::Status;
 
-constexpr uint64_t max_pixels = uint64_t(1) << 28;
+/// A picture, as RGB (Picture) or with all its channels (PictureChannels). Throws Error at `asked_by`.
+template <typename Decoded>
+Decoded decoded(const std::string& path, const SourceLocation& asked_by) {
+  check_readable(path, asked_by);
+  Decoded picture;
+  ImageAnswer answer;
+  try {
+    answer = decode_picture(path, asked_by, picture);
+  } catch (const std::bad_alloc&) {
+    answer = {Status::too_large, "out of memory"};
+  }
+  if (answer.status == Status::ok) return picture;
+  const std::string reason = answer.message.empty() ? "" : " (" + answer.message + ")";
+  if (answer.status == Status::too_large) {
+    throw Error(asked_by, "the picture '" + path + "' is too large" + reason,
+                "use one of at most 2^28 pixels and 3 * 2^28 values");
+  }
+  if (answer.status == Status::not_a_picture) {
+    throw Error(asked_by, "the file '" + path + "' is no picture that can be read" + reason,
+                "use a PNG, JPEG, TIFF, EXR or another common picture");
+  }
+  throw Error(asked_by, "the picture '" + path + "' is damaged or cut short" + reason, "put a sound copy in its place");
+}
 
 struct Format {
   std::string extension;
@@ -122,9 +145,6 @@ Channels file_channels(const Format& format, const std::vector<PictureLayer>& la
   return {channel_names(layer), std::move(layer.values)};
 }
 
-/// Closes each by a zero, as EncodeRequest has them.
-void append_text(std::string& texts, const std::string& text) { texts.append(text.c_str()).push_back('\0'); }
-
 }  // namespace
 
 void check_readable(const std::string& path, const SourceLocation& asked_by) {
@@ -150,24 +170,11 @@ void check_readable(const std::string& path, const SourceLocation& asked_by) {
 }
 
 Picture read_picture(const std::string& path, const SourceLocation& asked_by) {
-  check_readable(path, asked_by);
-  Picture picture;
-  ImageAnswer answer;
-  try {
-    answer = decode_picture(path, max_pixels, asked_by, picture);
-  } catch (const std::bad_alloc&) {
-    answer = {Status::too_large, "out of memory"};
-  }
-  if (answer.status == Status::ok) return picture;
-  const std::string reason = answer.message.empty() ? "" : " (" + answer.message + ")";
-  if (answer.status == Status::too_large) {
-    throw Error(asked_by, "the picture '" + path + "' is too large" + reason, "use one of at most 2^28 pixels");
-  }
-  if (answer.status == Status::not_a_picture) {
-    throw Error(asked_by, "the file '" + path + "' is no picture that can be read" + reason,
-                "use a PNG, JPEG, TIFF, EXR or another common picture");
-  }
-  throw Error(asked_by, "the picture '" + path + "' is damaged or cut short" + reason, "put a sound copy in its place");
+  return decoded<Picture>(path, asked_by);
+}
+
+LayeredPicture read_layers(const std::string& path, const SourceLocation& asked_by) {
+  return in_layers(decoded<PictureChannels>(path, asked_by));
 }
 
 void check_writable(const std::string& path) {

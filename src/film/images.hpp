@@ -37,6 +37,20 @@ void check_readable(const std::string& path, const SourceLocation& asked_by);
 /// ends the process. Thread-safe; one picture is read or written at a time.
 Picture read_picture(const std::string& path, const SourceLocation& asked_by);
 
+/// A picture with all that its file holds.
+struct LayeredPicture {
+  int width = 0, height = 0;
+  bool is_float = false;                    ///< floats, which as a rule are linear; else integers, read as 0..1
+  std::vector<PictureLayer> layers;         ///< in the order of their first channels in the file
+};
+
+/// Reads a picture with all its layers, the inverse of write_picture: channels R, G, B or X, Y, Z of one prefix are a
+/// layer of three channels, any other channel is one by itself. A layer has the name of the prefix, without a prefix
+/// that of a colour is "beauty"; grey without a prefix is spread over three channels. A channel that would take a name
+/// that is taken has its full name, and so have plain ones, such as "A". Values and errors are those of read_picture,
+/// and a file of more than 3 * 2^28 values is refused, too.
+LayeredPicture read_layers(const std::string& path, const SourceLocation& asked_by);
+
 /// Checks that a picture can be written to `path`: a known extension, a folder that exists and can be written.
 /// Throws Error; called before rendering begins. Does not start the process, nor touch the file.
 void check_writable(const std::string& path);
@@ -52,8 +66,8 @@ void write_picture(const std::string& path, int width, int height, const std::ve
 /// program. Throws Error without a place if it cannot be started.
 void start_image_process();
 
-/// Ends the process for pictures, so that the end of the program need not; does not wait for that. A later call of
-/// read_picture or write_picture starts another.
+/// Ends the process for pictures, so that the end of the program need not; does not wait for that. A later call that
+/// reads or writes a picture starts another.
 void end_image_process();
 
 }  // namespace vitrum

@@ -14,7 +14,7 @@ struct PhotonMap;
 struct RayCounts {
   uint64_t camera = 0;          ///< from the eye
   uint64_t secondary = 0;       ///< reflected and refracted
-  uint64_t shadow = 0;          ///< at most: surfaces that scatter times lights, those that face away included
+  uint64_t shadow = 0;
 };
 
 /// Traces camera rays pass by pass; keeps its buffers between passes.
@@ -25,14 +25,14 @@ class CameraPass {
   ~CameraPass();
 
   /// Adds samples [first, first + count) of every pixel, out of `total` of the whole picture, to the film's sums.
-  /// `map`: the photons to gather, or nullptr. Reports the fraction done.
+  /// `map`: the photons to gather; nullptr where the scene has no caustics. Reports the fraction done.
   void run(uint32_t replicate, uint32_t first, uint32_t count, uint32_t total, const PhotonMap* map,
            const std::function<void(double)>& progress);
 
   /// The film's sums since the last call, plane after plane of width * height values (kernels/film.h), and clears them.
   std::vector<float> take_film();
 
-  const RayCounts& counts() const;
+  RayCounts counts() const;
 
  private:
   struct State;

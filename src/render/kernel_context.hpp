@@ -3,7 +3,7 @@
 
 #include "device/device_scene.hpp"
 #include "device/opencl.hpp"
-#include "device/programs.hpp"
+#include "device/kernels.hpp"
 #include "scene/features.hpp"
 #include "scene/scene.hpp"
 
@@ -11,7 +11,7 @@ namespace vitrum {
 
 struct KernelContext {
   Device& device;
-  const Programs& programs;
+  const Kernels& kernels;
   const Scene& scene;
   const SceneData& data;
   const DeviceScene& device_scene;
@@ -20,9 +20,6 @@ struct KernelContext {
   /// Work-items for `count` entries of a kernel that takes WIDTH of them at a time.
   size_t packets(size_t count) const { return (count + device.width() - 1) / device.width(); }
 };
-
-/// Entries that one work-item of the counting and copying stages minds (BLOCK of kernels/blocks.h).
-inline constexpr uint32_t block_size = 256;
 
 /// Stride for arrays of fields with room for `count` entries: whole SIMD lanes, and not a power of two, or all fields
 /// of an entry would fall into the same few lines of a CPU's cache (a third of the photons' time was lost to that).

@@ -21,13 +21,13 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
 class PhotonGrid {
  public:
   explicit PhotonGrid(const KernelContext& context);
-  /// Fills everything of `map` but its unsorted photons and their count.
+  /// Sorts the photons of the runs into the grid, and fills all that belongs to it.
   void sort(PhotonMap& map);
 
  private:
   KernelContext context_;
-  Buffer<uint32_t> offsets_, sums_;
-  Buffer<cl_float8> bounds_, rows_;
+  Buffer<uint32_t> counts_, first_of_bucket_, next_of_cell_;
+  Buffer<cl_float8> bounds_, bucketed_;
 };
 
 }  // namespace vitrum

@@ -24,12 +24,14 @@ struct PhotonBalance {
   uint64_t surfaces_met = 0;    ///< rays traced
 };
 
-/// Photons in the order in which they were stored, and sorted: for the k nearest into the tree, else into the grid.
+/// Photons as they are stored, run by run, and sorted: for the k nearest into the tree, else into the grid.
 struct PhotonMap {
   uint32_t count = 0;
-  Buffer<cl_float8> photons;    ///< kernels/photon_map.h: unsorted
-  Buffer<float> sorted;         ///< structure of arrays
-  uint32_t stride = 0;
+  Buffer<float> photons;        ///< kernels/photon_map.h: run by run, and once sorted into the grid, in its order
+  Buffer<kernel::PhotonRunData> runs;
+  std::vector<uint32_t> stored_by_run;
+  uint32_t run_length = 0;
+  uint32_t stride = 0;          ///< of the sorted photons; 0: not sorted into the grid
   Buffer<uint32_t> first_of_cell;
   kernel::GridData grid{};
   float radius = 0.0f;          ///< of the estimate [m]; for the k nearest, the greatest
@@ -37,6 +39,12 @@ struct PhotonMap {
   kernel::PhotonTreeData tree{};
   Buffer<float> leaves, nodes;
 };
+
+/// The photons of the map {x, y, z, packed direction, power r, g, b, -}, in no order that means anything.
+std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map);
+
+/// Sets a kernel's PHOTON_MAP_PARAMETERS (kernels/gather.h) from argument `first` on; returns the next argument's index.
+unsigned set_map_arguments(cl::Kernel& kernel, unsigned first, const PhotonMap& map, const Scene& scene);
 
 /// Traces photons pass by pass; keeps its buffers between passes.
 class PhotonPass {

@@ -120,7 +120,7 @@ PhotonTree build_photon_tree(std::span<const cl_float8> photons) {
 void fill_photon_tree(Device& device, PhotonMap& map, double max_radius) {
   map.radius = static_cast<float>(max_radius);
   if (map.count == 0) return;
-  const PhotonTree tree = build_photon_tree(device.read(map.photons, 0, map.count));
+  const PhotonTree tree = build_photon_tree(read_photons(device, map));
   map.tree = tree.shape;
   auto fill = [&device](Buffer<float>& buffer, const std::vector<float>& values) {
     if (buffer.size() < values.size()) buffer = device.allocate<float>(values.size(), "photon map");

@@ -7,6 +7,7 @@
 #include "core/log.hpp"
 #include "core/progress.hpp"
 #include "core/suggest.hpp"
+#include "render/photon_dots.hpp"
 
 namespace vitrum {
 namespace {
@@ -27,15 +28,6 @@ std::vector<float> interleaved(const std::vector<float>& planes, size_t pixels, 
     for (size_t i = 0; i < pixels; ++i)
       values[i * static_cast<size_t>(channels) + c] = planes[(first + c) * pixels + i];
   return values;
-}
-
-std::vector<float> photon_dots(const KernelContext& context, const PhotonMap& map, size_t pixels) {
-  const Buffer<float> dots = context.device.allocate<float>(pixels, "film");
-  context.device.fill_zero(dots);
-  cl::Kernel kernel = context.programs.kernel("photon_dots", "photon_dots");
-  set_arguments(kernel, 0, map.count, map.photons, context.device_scene.camera, dots);
-  context.device.launch("photon dots", kernel, map.count);
-  return context.device.read(dots, 0, pixels);
 }
 
 }  // namespace
@@ -69,19 +61,16 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   const auto wants = [&](View view) {
     return std::find(options.views.begin(), options.views.end(), view) != options.views.end();
   };
-  std::vector<std::string> stages = stages_for(features);
-  if (wants(View::photons) && features.caustics) stages.push_back("photon_dots");
-
   const SceneData data = scene_data(scene, features);
   Tree tree;
   if (features.mesh) tree = build_tree(data.tree_triangles);
   result.seconds["tree"] = seconds_since(start);
-  const Programs programs(device, options.kernels, stages, features.build_options());
-  result.seconds["build"] = programs.build_seconds();
+  const Kernels kernels(device, options.kernels, stages_for(features), features.build_options());
+  result.seconds["build"] = kernels.build_seconds();
   const auto upload_start = std::chrono::steady_clock::now();
   const DeviceScene device_scene = upload(device, data, features, features.mesh ? &tree : nullptr);
   result.seconds["upload"] = seconds_since(upload_start);
-  const KernelContext context{device, programs, scene, data, device_scene, features};
+  const KernelContext context{device, kernels, scene, data, device_scene, features};
 
   const uint32_t samples = static_cast<uint32_t>(scene.render.samples);
   const uint64_t photons = features.caustics ? scene.photons.count : 0;
@@ -110,8 +99,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
       photons_before[replicate] += count;
       result.photon_radius = photon_pass->map().radius;
       if (wants(View::photons)) {
-        const std::vector<float> dots = photon_dots(context, photon_pass->map(), pixels);
-        result.film.add(pass, "photons", 1, dots, 1.0);
+        result.film.add(pass, "photons", 1, photon_dots(read_photons(device, photon_pass->map()), data.camera), 1.0);
       }
     }
     const uint32_t first = static_cast<uint32_t>(samples * pass / passes);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "device/opencl.hpp"
-#include "device/programs.hpp"
+#include "device/kernels.hpp"
 #include "film/film.hpp"
 #include "render/camera_pass.hpp"
 #include "render/photon_pass.hpp"

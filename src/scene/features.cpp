@@ -1,6 +1,7 @@
 #include "scene/features.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -98,6 +99,7 @@ Features scene_features(const Scene& scene) {
   f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;
   f.nearest_photons = f.caustics && scene.photons.estimate == PhotonEstimate::nearest;
   if (f.dielectric) f.constant_reflectance = scene.render.constant_reflectance;
+  f.max_depth = static_cast<unsigned>(scene.render.max_depth);
   return f;
 }
 
@@ -105,7 +107,10 @@ std::string Features::build_options() const {
   auto on = [](const char* name, bool value) { return std::string(" -D") + name + (value ? "=1" : "=0"); };
   std::string options = on("HAS_MESH", mesh) + on("HAS_DIELECTRIC", dielectric) + on("HAS_MEDIA_STACK", media_stack) +
                         on("HAS_CONTACTS", contacts) + on("HAS_ABSORPTION", absorption) + on("HAS_TEXTURES", textures) +
-                        on("HAS_HIGHLIGHTS", highlights) + " -DLIGHT_KINDS=" + std::to_string(light_kinds);
+                        on("HAS_HIGHLIGHTS", highlights) + on("HAS_DIRECT_LIGHT", lights) +
+                        " -DCAUSTICS=" + (nearest_photons ? "CAUSTICS_NEAREST" : caustics ? "CAUSTICS_WITHIN" : "CAUSTICS_NONE") +
+                        " -DCAMERA_STACK=" + std::to_string(std::max(32u, std::bit_ceil(max_depth + 1))) +
+                        " -DLIGHT_KINDS=" + std::to_string(light_kinds);
   if (constant_reflectance) {
     char text[64];
     std::snprintf(text, sizeof text, " -DCONSTANT_REFLECTANCE=%.9ef", *constant_reflectance);
@@ -134,14 +139,9 @@ std::string Features::names() const {
 }
 
 std::vector<std::string> stages_for(const Features& f) {
-  std::vector<std::string> stages = {"camera_generate", "trace", "camera_shade", "camera_queue", "film"};
-  if (f.lights) stages.push_back("direct_light");
-  if (f.caustics)
-    for (const char* stage : {"photon_emit", "photon_interact", "photon_store"}) stages.push_back(stage);
-  if (f.nearest_photons)
-    stages.push_back("gather_nearest");
-  else if (f.caustics)
-    for (const char* stage : {"photon_sort", "gather"}) stages.push_back(stage);
+  std::vector<std::string> stages = {"camera"};
+  if (f.caustics) stages.push_back("photons");
+  if (f.caustics && !f.nearest_photons) stages.push_back("photon_sort");
   return stages;
 }
 

@@ -23,10 +23,11 @@ constexpr int width = 48, height = 40;
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// The message of the refusal to read `path`; "" if there is none.
-std::string refusal(const std::string& path) {
+/// The message of the refusal to read `path` by `read`; "" if there is none.
+template <typename Read>
+std::string refusal_by(Read read, const std::string& path) {
   try {
-    read_picture(path, asked_by);
+    read(path, asked_by);
   } catch (const Error& error) {
     CHECK(starts_with(error.what(), "lawn.mtl:12:3: "));
     CHECK(contains(error.problem(), path));
@@ -34,6 +35,13 @@ std::string refusal(const std::string& path) {
     return error.what();
   }
   return "";
+}
+
+/// The message with which both ways of reading refuse `path`; "" if there is none.
+std::string refusal(const std::string& path) {
+  const std::string message = refusal_by(read_picture, path);
+  CHECK(refusal_by(read_layers, path) == message);
+  return message;
 }
 
 /// The message of the refusal to write `path`, which `call` does or checks; "" if there is none.
@@ -132,6 +140,11 @@ TEST_CASE("pictures: a header that claims far too many pixels is refused before 
   bmp.replace(18, 8, std::string("\x00\x80\x00\x00\x01\x20\x00\x00", 8));  // 32768 x 8193, one row above the limit
   put_file(folder / "huge.bmp", bmp);
   CHECK(contains(refusal(folder / "huge.bmp"), "is too large (32768 x 8193 pixels)"));
+  // As many pixels as are allowed, but of 32 bits, which stand at 28: four channels make too many values.
+  bmp.replace(18, 8, std::string("\x00\x40\x00\x00\x00\x40\x00\x00", 8));
+  bmp[28] = 32;
+  put_file(folder / "deep.bmp", bmp);
+  CHECK(contains(refusal_by(read_layers, folder / "deep.bmp"), "is too large (16384 x 16384 pixels of 4 channels)"));
 }
 
 TEST_CASE("pictures: a fault in the middle is refused") {

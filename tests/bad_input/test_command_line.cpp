@@ -7,42 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "core/error.hpp"
 #include "film/images.hpp"
-#include "vitrum_process.hpp"
 
 using namespace vitrum;
 
 namespace {
 
-using Words = std::vector<std::string>;
-
 const std::string models = VITRUM_SOURCE_DIR "/models/";
 const std::string default_scene = models + "default_scene/scene.toml";
 const Words small{"--size", "16x16", "--samples", "1", "--photons", "1000"};
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-/// A run with `words` must be refused at `place`, for a `problem`, with a `mend`, in one line and nothing else.
-void check_refused(const Words& words, const std::string& place, const std::string& problem, const std::string& mend,
-                   const Words& settings = {}) {
-  const Ended run = vitrum_run(words, settings);
-  CAPTURE(run.err);
-  CHECK(run.code > 0);
-  CHECK(run.out.empty());
-  const std::string start = "vitrum: error: " + (place.empty() ? "" : place + ": ");
-  CAPTURE(start);
-  CHECK(run.err.rfind(start, 0) == 0);
-  const size_t at = run.err.find(problem);
-  CHECK_MESSAGE(at != std::string::npos, problem);
-  if (at != std::string::npos) CHECK_MESSAGE(contains(run.err.substr(at), "; " + mend), mend);
-  CHECK(run.err.find('\n') == run.err.size() - 1);
-}
 
 /// A scene of one mesh, in a folder that a render must leave as it is.
 struct MeshScene {
@@ -282,7 +257,7 @@ TEST_CASE("the report is complete") {
   for (const char* key : {"name", "platform", "version", "driver"}) CHECK_FALSE(report["device"][key].empty());
   CHECK(contains(report["features"], "caustics"));
   CHECK_FALSE(contains(report["features"], "mesh"));
-  for (const char* stage : {"load", "tree", "build", "emit", "trace", "store", "sort", "camera", "write", "total"}) {
+  for (const char* stage : {"load", "tree", "build", "photons", "sort", "camera", "write", "total"}) {
     CHECK_MESSAGE(report["seconds"].contains(stage), stage);
     CHECK_MESSAGE(report["seconds"].value(stage, -1.0) >= 0.0, stage);
   }
@@ -333,7 +308,7 @@ TEST_CASE("info tells what was understood of every model, and from where") {
   const std::string text = info("default_scene");
   for (const char* part : {"glossy volume", "(illum 12, scene.toml:48)", "index 1.5 (Ni, default_scene.mtl:16)",
                            "absorption 0.667 0.111 0.429 1/m (Kd by 1/rho_d - 1, scene.toml:49)", "3 shapes", "point",
-                           "dielectric, absorption", "photon_emit", "MiB"})
+                           "dielectric, absorption", "camera photons photon_sort", "MiB"})
     CHECK_MESSAGE(contains(text, part), text << " lacks " << part);
   CHECK(contains(info("caustic_plate"), "absorption 0 0 0 1/m"));
   const std::string cornell = info("cornell_glass");
@@ -347,7 +322,7 @@ TEST_CASE("help, version and devices go to standard output") {
     CHECK(run.code == 0);
     CHECK(run.err == "");
   }
-  for (const char* command : {"render", "info", "devices"}) CHECK(contains(help.out, command));
+  for (const char* command : {"render", "compare", "info", "devices"}) CHECK(contains(help.out, command));
   for (const char* option : {"--output", "--samples", "--photons", "--seed", "--size", "--threads", "--device", "--view",
                              "--set", "--report", "--quiet", "--kernels"})
     CHECK_MESSAGE(contains(render.out, option), option);

@@ -132,6 +132,10 @@ TEST_CASE("process for pictures: one that ends while a picture is read or writte
     CHECK(contains(message, "lawn.mtl:12:3: the picture '" + path + "' cannot be read"));
     CHECK(contains(message, how));
     CHECK(read_picture(path, asked_by).width == 8);
+    message = refusal_when_ended_by(signal_number, [&] { read_layers(path, asked_by); });
+    CHECK(contains(message, "lawn.mtl:12:3: the picture '" + path + "' cannot be read"));
+    CHECK(contains(message, how));
+    CHECK(read_layers(path, asked_by).width == 8);
     // A picture of a megabyte is still being sent when its reader goes, and must not end the tests by SIGPIPE.
     for (const int size : {8, 512}) {
       message = refusal_when_ended_by(signal_number, [&] { write_grey(folder / "y.png", size); });
@@ -168,6 +172,8 @@ TEST_CASE("process for pictures: threads share it, and each gets its own picture
       const Picture picture = read_picture(path, asked_by);
       for (const glm::vec3& pixel : picture.pixels)
         if (pixel != picture.pixels.front()) return -1.0f;
+      for (const float value : read_layers(path, asked_by).layers.front().values)
+        if (value != picture.pixels.front().x) return -1.0f;
       return picture.pixels.front().x;
     }));
   }
@@ -189,6 +195,9 @@ TEST_CASE("vitrum without its vitrum_images, or with a wrong one") {
   const LoneVitrum vitrum;
   const std::string mend = "; build or install vitrum again, with vitrum_images beside the program";
   std::string message = vitrum.render_refusal();
+  CHECK(contains(message, "there is neither " + vitrum.folder / "vitrum_images"));
+  CHECK(contains(message, mend));
+  message = vitrum.refusal({"compare", "a.png", "b.png"});
   CHECK(contains(message, "there is neither " + vitrum.folder / "vitrum_images"));
   CHECK(contains(message, mend));
   message = vitrum.refusal({"info", default_scene});

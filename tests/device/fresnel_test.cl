@@ -39,6 +39,6 @@ __kernel void medium(__global const float* in, __global float* out, const uint c
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;
   OUTPUT(0, transmittance(INPUT(0), INPUT(1)));
-  OUTPUT(1, absorptance(INPUT(0), INPUT(1)));
+  OUTPUT(1, attenuation(INPUT(0), INPUT(1)).taken);
   OUTPUT(2, sigma_a_from_rho_d(INPUT(2)));
 }

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "render/photon_grid.hpp"
@@ -30,79 +31,90 @@ class Gatherer {
  public:
   explicit Gatherer(unsigned group_size, const KernelFiles& files = {})
       : device_("", group_size),
-        programs_(device_, files, {"photon_sort", "gather", "gather_nearest"}, Features{}.build_options()),
-        context_{device_, programs_, scene_, data_, device_scene_, features_} {}
+        kernels_(device_, files, {"photon_sort"}, Features{}.build_options()),
+        context_{device_, kernels_, scene_, data_, device_scene_, features_},
+        within_(gather_kernel(files, false)),
+        nearest_(gather_kernel(files, true)) {}
 
   std::vector<glm::vec3> within(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, float radius) {
     scene_.photons.estimate = PhotonEstimate::fixed_radius;
     scene_.photons.radius = static_cast<double>(radius);
     PhotonMap map = stored(photons);
     PhotonGrid(context_).sort(map);
-    return run(queries, "gather", [&](cl::Kernel& kernel, auto count, auto stride, auto&... buffers) {
-      const cl_float4 low = {{map.low[0], map.low[1], map.low[2], 0}};
-      const cl_float4 high = {{map.high[0], map.high[1], map.high[2], 0}};
-      set_arguments(kernel, 0, count, stride, map.grid, map.radius, low, high, map.stride, map.first_of_cell,
-                    map.sorted, buffers...);
-    });
+    return run(within_, "within", map, queries);
   }
 
   std::vector<glm::vec3> nearest(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, uint32_t k,
-                            float max_radius) {
+                                 float max_radius) {
+    scene_.photons.estimate = PhotonEstimate::nearest;
+    scene_.photons.nearest = static_cast<int>(k);
     PhotonMap map = stored(photons);
     fill_photon_tree(device_, map, static_cast<double>(max_radius));
-    return run(queries, "gather_nearest", [&](cl::Kernel& kernel, auto count, auto stride, auto&... buffers) {
-      set_arguments(kernel, 0, count, stride, k, map.radius, map.tree, map.nodes, map.leaves, buffers...);
-    });
+    return run(nearest_, "nearest", map, queries);
   }
 
-  /// Seconds that the kernels ran, by stage.
+  /// Seconds that the kernels ran, by stage: sort, within, nearest.
   std::map<std::string, double> seconds() { return device_.stage_seconds(); }
 
  private:
+  cl::Kernel gather_kernel(const KernelFiles& files, bool nearest) const {
+    Features features;
+    features.caustics = true;
+    features.nearest_photons = nearest;
+    const std::string folder = VITRUM_SOURCE_DIR;
+    return cl::Kernel(device_.build("gather_test.cl", "#include \"gather_test.cl\"\n",
+                                    "-cl-std=CL1.2 -I " + folder + "/tests/device -I " +
+                                        (files.folder.empty() ? folder + "/kernels" : files.folder) +
+                                        features.build_options()),
+                      "gather_test");
+  }
+
+  /// The photons as a single run has them.
   PhotonMap stored(const std::vector<cl_float8>& photons) {
     PhotonMap map;
     map.count = static_cast<uint32_t>(photons.size());
-    map.photons = device_.upload(photons, "photons");
+    map.run_length = map.count;
+    map.stored_by_run = {map.count};
+    std::vector<float> fields(std::max<size_t>(kernel::photon_in_run(map.run_length, 1, 0),
+                                               size_t{PHOTON_FIELDS} * padded(map.count + 8)));
+    for (size_t i = 0; i < photons.size(); ++i)
+      for (uint32_t field = 0; field < PHOTON_FIELDS; ++field)
+        fields[kernel::photon_in_run(map.run_length, 0, field) + i] = photons[i].s[field];
+    map.photons = device_.upload(fields, "photons");
+    kernel::PhotonRunData run{};
+    run.photons[OUTCOME_STORED] = map.count;
+    map.runs = device_.upload(std::vector<kernel::PhotonRunData>{run}, "photons");
     return map;
   }
 
   /// Radiance of the queries.
-  template <typename SetArguments>
-  std::vector<glm::vec3> run(const std::vector<Query>& queries, const char* name, SetArguments set) {
-    const uint32_t count = static_cast<uint32_t>(queries.size()), stride = padded(count);
-    std::vector<float> surfaces(size_t{SURFACE_FIELDS} * stride), scatter(size_t{SCATTER_FIELDS} * stride);
-    for (size_t i = 0; i < count; ++i)
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto row = static_cast<size_t>(axis);
-        surfaces[(SURFACE_POSITION + row) * stride + i] = queries[i].position[axis];
-        scatter[(SCATTER_NORMAL + row) * stride + i] = queries[i].normal[axis];
-        scatter[(SCATTER_DIFFUSE + row) * stride + i] = queries[i].diffuse[axis];
-      }
-    const Buffer<float> on_device[] = {device_.upload(surfaces, "test"), device_.upload(scatter, "test"),
-                                       device_.upload(std::vector<float>(size_t{SHARE_FIELDS} * stride), "test")};
-    cl::Kernel kernel = programs_.kernel(name, name);
-    set(kernel, count, stride, on_device[0], on_device[1], on_device[2]);
-    device_.launch(name, kernel, count);
-    const std::vector<float> shares = device_.read(on_device[2], 0, size_t{SHARE_FIELDS} * stride);
+  std::vector<glm::vec3> run(cl::Kernel& kernel, const char* stage, const PhotonMap& map,
+                             const std::vector<Query>& queries) {
+    const uint32_t count = static_cast<uint32_t>(queries.size());
+    std::vector<float> places;
+    for (const Query& query : queries)
+      for (const glm::vec3& v : {query.position, query.normal}) places.insert(places.end(), {v.x, v.y, v.z});
+    const Buffer<float> on_device = device_.upload(places, "queries");
+    const Buffer<float> irradiance = device_.allocate<float>(size_t{3} * count, "queries");
+    set_arguments(kernel, 0, count, on_device);
+    set_arguments(kernel, set_map_arguments(kernel, 2, map, scene_), irradiance);
+    device_.launch(stage, kernel, count);
+    const std::vector<float> values = device_.read(irradiance, 0, size_t{3} * count);
     std::vector<glm::vec3> radiance(count);
-    size_t unlike = 0;
     for (size_t i = 0; i < count; ++i)
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto row = static_cast<size_t>(axis);
-        radiance[i][axis] = shares[(SHARE_BEAUTY + row) * stride + i];
-        unlike += shares[(SHARE_CAUSTICS + row) * stride + i] != radiance[i][axis];
-      }
-    if (unlike > 0) throw std::logic_error("caustics and beauty differ");
+      radiance[i] = queries[i].diffuse * glm::vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]) *
+                    std::numbers::inv_pi_v<float>;
     return radiance;
   }
 
   Device device_;
-  Programs programs_;
+  Kernels kernels_;
   Scene scene_;
   SceneData data_;
   DeviceScene device_scene_;
   Features features_;
   KernelContext context_;
+  cl::Kernel within_, nearest_;
 };
 
 }  // namespace vitrum

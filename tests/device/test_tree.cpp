@@ -108,7 +108,7 @@ __kernel void improve(__global const TreeNode* nodes, __global const TreeLeaf* l
 /// The device with both ways to read a mask from a vector.
 struct Device {
   OpenClHarness cl;
-  std::array<cl::Program, 2> programs{cl.build(kernel_text), cl.build(kernel_text, "-DVITRUM_PORTABLE")};
+  std::array<cl::Program, 2> kernels{cl.build(kernel_text), cl.build(kernel_text, "-DVITRUM_PORTABLE")};
 
   static const Device& get() {
     static const Device device;
@@ -122,7 +122,7 @@ std::vector<Result> trace(const std::vector<TreeTriangle>& triangles, std::vecto
   const size_t count = rays.size();
   rays.resize((count + 63) / 64 * 64, rays.back());
   const cl::Buffer results = device.cl.upload(std::vector<Result>(rays.size()));
-  device.cl.run(device.programs[portable], "trace", rays.size(), device.cl.upload(tree.nodes),
+  device.cl.run(device.kernels[portable], "trace", rays.size(), device.cl.upload(tree.nodes),
                 device.cl.upload(tree.leaves), static_cast<uint32_t>(tree.leaves.size()), device.cl.upload(rays),
                 results);
   return device.cl.download<Result>(results, count);
@@ -421,7 +421,7 @@ TEST_CASE("a hit that is there already is only replaced by one that comes before
   std::vector<HitData> held(64);
   for (size_t i = 0; i < std::size(cases); ++i) held[i] = cases[i].held;
   const cl::Buffer hits = device.cl.upload(held), found = device.cl.upload(std::vector<uint32_t>(64));
-  device.cl.run(device.programs[0], "improve", 64, device.cl.upload(tree.nodes), device.cl.upload(tree.leaves), hits,
+  device.cl.run(device.kernels[0], "improve", 64, device.cl.upload(tree.nodes), device.cl.upload(tree.leaves), hits,
                 found);
   const auto after = device.cl.download<HitData>(hits, 64);
   const auto replaced = device.cl.download<uint32_t>(found, 64);

@@ -17,14 +17,14 @@ class PhotonRun {
         device_(device),
         features_(scene_features(scene)),
         data_(scene_data(scene, features_)),
-        programs_(device, {}, stages_for(features_), features_.build_options()),
+        kernels_(device, {}, stages_for(features_), features_.build_options()),
         device_scene_(upload(device, data_, features_, nullptr)),
-        pass_(KernelContext{device_, programs_, scene_, data_, device_scene_, features_}, largest_pass) {}
+        pass_(KernelContext{device_, kernels_, scene_, data_, device_scene_, features_}, largest_pass) {}
 
   /// Shoots `count` photons of `replicate` and returns those that were stored: x, y, z, -, power r, g, b, - each.
   std::vector<cl_float8> shoot(uint32_t replicate, uint64_t count) {
     pass_.run(replicate, 0, count, [](double) {});
-    return device_.read(pass_.map().photons, 0, pass_.map().count);
+    return read_photons(device_, pass_.map());
   }
 
   /// Sum over all shots.
@@ -35,7 +35,7 @@ class PhotonRun {
   Device& device_;
   Features features_;
   SceneData data_;
-  Programs programs_;
+  Kernels kernels_;
   DeviceScene device_scene_;
   PhotonPass pass_;
 };

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -131,6 +132,68 @@ TEST_CASE("layers have names that viewers know, and the beauty is what a plain r
   // Another format takes the first layer.
   write_picture(folder / "x.png", width, height, {albedo, beauty}, identity(), {});
   CHECK(distance(read_picture(folder / "x.png", here).pixels[3], glm::vec3(0.25f)) <= 0.5f / 255);
+}
+
+TEST_CASE("layers are read as they were written, to the bit") {
+  const TemporaryFolder folder;
+  PictureLayer beauty = ramp("beauty"), albedo = ramp("albedo"), normal = ramp("normal"), depth = ramp("depth", 1);
+  for (float& value : albedo.values) value = 1e-30f - value;
+  normal.values[4] = std::numeric_limits<float>::infinity();
+  normal.is_colour = depth.is_colour = false;
+  write_picture(folder / "x.exr", width, height, {albedo, normal, beauty, depth}, {}, {});
+  const LayeredPicture picture = read_layers(folder / "x.exr", here);
+  CHECK(picture.width == width);
+  CHECK(picture.height == height);
+  CHECK(picture.is_float);
+  REQUIRE(picture.layers.size() == 4);
+  for (const PictureLayer& written : {beauty, albedo, normal, depth}) {
+    CAPTURE(written.name);
+    const auto read = std::find_if(picture.layers.begin(), picture.layers.end(),
+                                   [&](const PictureLayer& layer) { return layer.name == written.name; });
+    REQUIRE(read != picture.layers.end());
+    CHECK(read->channels == written.channels);
+    CHECK(read->is_colour == written.is_colour);
+    CHECK(read->values == written.values);
+  }
+}
+
+TEST_CASE("a picture of many rows is read in several pieces, each in its place") {
+  const TemporaryFolder folder;
+  constexpr int rows = 600;
+  PictureLayer beauty{"beauty", 3, {}, true}, depth{"depth", 1, {}, false};
+  for (int i = 0; i < 2 * rows; ++i) {
+    beauty.values.insert(beauty.values.end(), {float(i), float(-i), 0.5f});
+    depth.values.push_back(float(10 * i));
+  }
+  write_picture(folder / "x.exr", 2, rows, {beauty, depth}, {}, {});
+  const Picture plain = read_picture(folder / "x.exr", here);
+  REQUIRE(plain.pixels.size() == size_t(2 * rows));
+  for (int i = 0; i < 2 * rows; ++i) CHECK(plain.pixels[size_t(i)] == colour(beauty, i));
+  const LayeredPicture layered = read_layers(folder / "x.exr", here);
+  REQUIRE(layered.layers.size() == 2);
+  for (const PictureLayer& layer : layered.layers)
+    CHECK(layer.values == (layer.name == "beauty" ? beauty.values : depth.values));
+}
+
+TEST_CASE("pictures without layers have one, the beauty") {
+  const TemporaryFolder folder;
+  for (const int channels : {1, 3}) {
+    for (const std::string name : {"x.png", "x.jpg", "x.tif", "x.bmp", "x.hdr", "x.exr"}) {
+      CAPTURE(name);
+      write_picture(folder / name, width, height, {ramp("", channels)}, identity(), {});
+      const LayeredPicture layered = read_layers(folder / name, here);
+      const Picture plain = read_picture(folder / name, here);
+      CHECK(layered.width == width);
+      CHECK(layered.height == height);
+      CHECK(layered.is_float == (name == "x.hdr" || name == "x.exr"));
+      REQUIRE(layered.layers.size() == 1);
+      const PictureLayer& layer = layered.layers.front();
+      CHECK(layer.name == "beauty");
+      CHECK(layer.is_colour);
+      REQUIRE(layer.channels == 3);
+      for (int i = 0; i < width * height; ++i) CHECK(colour(layer, i) == plain.pixels[size_t(i)]);
+    }
+  }
 }
 
 TEST_CASE("the header holds the metadata and the version") {

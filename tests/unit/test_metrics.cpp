@@ -41,6 +41,15 @@ TEST_CASE("the errors of known differences") {
   CHECK(error.maximum == 2);
   CHECK(error.maximum_x == 2);
   CHECK(error.maximum_y == 1);
+  CHECK(error.maximum_channel == 2);
+  CHECK(error.relative_rmse == doctest::Approx(std::sqrt(5.0 / 16.01 / 18)));
+  CHECK(error.differing_pixels == 2);
+  CHECK(error.channel_means[0] == 4);
+  CHECK(error.channel_means[1] == doctest::Approx(4 - 1.0 / 6));
+  CHECK(error.channel_means[2] == doctest::Approx(4 + 2.0 / 6));
+  CHECK(error.truth_channel_means == std::vector<double>{4, 4, 4});
+  CHECK(error.mean == doctest::Approx(4 + 1.0 / 18));
+  CHECK(error.truth_mean == 4);
   CHECK(picture_error(picture, truth, 9.0).relative_mse == doctest::Approx(5.0 / 25 / 18));
 }
 
@@ -70,6 +79,43 @@ TEST_CASE("a NaN or an infinity cannot hide") {
       CHECK(error.maximum_y == 1);
     }
   }
+}
+
+TEST_CASE("a layer of one channel, and what is infinite in both pictures") {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> values{1, 5, infinity, 2, 2, 2}, truth{1, 2, infinity, 2, 2, 2};
+  const PictureError error = values_error(values, truth, 2, 3, 1);
+  CHECK(error.mse == doctest::Approx(9.0 / 6));
+  CHECK(error.maximum == 3);
+  CHECK(error.maximum_x == 1);
+  CHECK(error.maximum_y == 0);
+  CHECK(error.maximum_channel == 0);
+  CHECK(error.not_finite == 0);
+  CHECK(error.differing_pixels == 1);
+  CHECK(error.mean == doctest::Approx(12.0 / 5));
+  CHECK(error.truth_mean == doctest::Approx(9.0 / 5));
+  CHECK(pixels_not_finite(values, 1) == 1);
+  CHECK(pixels_not_finite(values, 2) == 1);
+  CHECK(pixels_not_finite(truth, 3) == 1);
+  CHECK(pixel_differences(values, truth, 1) == std::vector<float>{0, 3, 0, 0, 0, 0});
+  CHECK(pixel_differences(values, truth, 3) == std::vector<float>{3, 0});
+}
+
+TEST_CASE("means are those of values that are finite in both pictures") {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const PictureError error = values_error(std::vector<float>{1, 3, infinity}, std::vector<float>{5, infinity, 2}, 3, 1, 1);
+  CHECK(error.mean == 1);
+  CHECK(error.truth_mean == 5);
+  CHECK(error.not_finite == 2);
+}
+
+TEST_CASE("pixels differ by their bits") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> values{0.0f, nan, 1.0f, -0.0f}, truth{-0.0f, nan, 1.0f, 0.0f};
+  const PictureError error = values_error(values, truth, 4, 1, 1);
+  CHECK(error.differing_pixels == 2);  // 0 and -0, but not NaN and the same NaN
+  CHECK(error.not_finite == 1);
+  CHECK(std::isinf(pixel_differences(std::vector<float>{nan}, std::vector<float>{nan}, 1)[0]));
 }
 
 TEST_CASE("pictures of different sizes are not compared") {

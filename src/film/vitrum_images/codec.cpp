@@ -27,13 +27,14 @@ Outcome guarded(Status otherwise, Work work) {
   }
 }
 
-/// Which channels of a file are its colour.
-struct ColourChannels {
+/// Which channels of a file are read.
+struct ChannelRange {
   int first = 0;
-  int count = 3;  ///< 3, or 1 for grey
+  int count = 3;
 };
 
-ColourChannels colour_channels(const OIIO::ImageSpec& spec) {
+/// Those of its colour: 3, or 1 for grey.
+ChannelRange colour_channels(const OIIO::ImageSpec& spec) {
   const auto& names = spec.channelnames;
   for (int i = 0; i + 2 < spec.nchannels && i + 2 < static_cast<int>(names.size()); ++i) {
     if (names[i] == "R" && names[i + 1] == "G" && names[i + 2] == "B") return {i, 3};
@@ -41,19 +42,18 @@ ColourChannels colour_channels(const OIIO::ImageSpec& spec) {
   return {0, spec.nchannels >= 3 ? 3 : 1};
 }
 
-/// Reads the rows from `y` to before `end`, three floats a pixel.
-bool read_rows(OIIO::ImageInput& input, const ColourChannels& colour, int y, int end, float* values) {
+/// Reads the rows from `y` to before `end`, with `pixel_values` floats from one pixel to the next.
+bool read_rows(OIIO::ImageInput& input, const ChannelRange& range, int y, int end, float* values, size_t pixel_values) {
   const OIIO::ImageSpec& spec = input.spec();
-  const int last_channel = colour.first + colour.count;
-  const OIIO::stride_t stride = 3 * sizeof(float);
+  const int end_channel = range.first + range.count;
+  const auto stride = static_cast<OIIO::stride_t>(pixel_values * sizeof(float));
   if (spec.tile_width == 0)
-    return input.read_scanlines(0, 0, y, end, spec.z, colour.first, last_channel, OIIO::TypeDesc::FLOAT, values,
-                                stride);
-  return input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, end, spec.z, spec.z + 1, colour.first, last_channel,
+    return input.read_scanlines(0, 0, y, end, spec.z, range.first, end_channel, OIIO::TypeDesc::FLOAT, values, stride);
+  return input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, end, spec.z, spec.z + 1, range.first, end_channel,
                           OIIO::TypeDesc::FLOAT, values, stride);
 }
 
-Outcome decode_file(const std::string& path, uint64_t max_pixels, const std::function<void(PictureSize)>& take_size,
+Outcome decode_file(const std::string& path, const DecodeRequest& request, const TakeContents& take_contents,
                     const std::function<void(std::span<const float>)>& take_rows) {
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are in the file, not multiplied by alpha
@@ -62,19 +62,29 @@ Outcome decode_file(const std::string& path, uint64_t max_pixels, const std::fun
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
     return {Status::not_a_picture, "no plain two-dimensional pixels"};
-  if (static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) > max_pixels)
-    return {Status::too_large, std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels"};
-  const ColourChannels colour = colour_channels(spec);
+  const bool wants_all = request.wants_all != 0;
+  const ChannelRange range = wants_all ? ChannelRange{0, spec.nchannels} : colour_channels(spec);
+  std::vector<std::string> names{"R", "G", "B"};
+  if (wants_all) {
+    names = spec.channelnames;
+    names.resize(static_cast<size_t>(spec.nchannels));  // a reader need not name them all
+  }
+  const uint64_t pixels = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height);
+  const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels";
+  if (pixels > request.max_pixels) return {Status::too_large, size};
+  if (pixels > request.max_values / names.size())
+    return {Status::too_large, size + " of " + std::to_string(names.size()) + " channels"};
   const int step = spec.tile_width == 0 ? band_rows : spec.tile_height;
-  std::vector<float> band(static_cast<size_t>(std::min(step, spec.height)) * static_cast<size_t>(spec.width) * 3);
-  take_size({spec.width, spec.height});
+  const size_t row_values = static_cast<size_t>(spec.width) * names.size();
+  std::vector<float> band(static_cast<size_t>(std::min(step, spec.height)) * row_values);
+  take_contents({spec.width, spec.height, spec.format.is_floating_point()}, names);
   for (int row = 0; row < spec.height; row += step) {
     const int rows = std::min(step, spec.height - row);
-    const std::span<float> values(band.data(), static_cast<size_t>(rows) * static_cast<size_t>(spec.width) * 3);
-    const bool is_read = read_rows(*input, colour, spec.y + row, spec.y + row + rows, values.data());
+    const std::span<float> values(band.data(), static_cast<size_t>(rows) * row_values);
+    const bool is_read = read_rows(*input, range, spec.y + row, spec.y + row + rows, values.data(), names.size());
     // Readers of JPEG and TIFF fill in what a file cut short lacks, report success, and leave an error behind.
     if (!is_read || input->has_error()) return {Status::damaged, first_line(input->geterror())};
-    if (colour.count == 1) {
+    if (!wants_all && range.count == 1) {
       for (size_t i = 0; i < values.size(); i += 3) values[i + 1] = values[i + 2] = values[i];
     }
     take_rows(values);
@@ -139,9 +149,9 @@ Outcome encode_file(const EncodeRequest& request, const std::vector<std::string>
 
 }  // namespace
 
-Outcome decode(const std::string& path, uint64_t max_pixels, const std::function<void(PictureSize)>& take_size,
+Outcome decode(const std::string& path, const DecodeRequest& request, const TakeContents& take_contents,
                const std::function<void(std::span<const float>)>& take_rows) {
-  return guarded(Status::damaged, [&] { return decode_file(path, max_pixels, take_size, take_rows); });
+  return guarded(Status::damaged, [&] { return decode_file(path, request, take_contents, take_rows); });
 }
 
 Outcome encode(const EncodeRequest& request, const std::vector<std::string>& texts,

@@ -16,9 +16,12 @@ struct Outcome {
   std::string message;  ///< one line in OpenImageIO's words; "" if it has none
 };
 
-/// Decodes the file at `path` as RGB; grey is spread. The size goes to `take_size` before any pixel is read, then the
-/// rows from the top to `take_rows`, some at a time, 3 * width floats each. Refuses pictures of more than `max_pixels`.
-Outcome decode(const std::string& path, uint64_t max_pixels, const std::function<void(PictureSize)>& take_size,
+/// Takes what will be decoded, and the names of its channels.
+using TakeContents = std::function<void(const PictureContents&, const std::vector<std::string>&)>;
+
+/// Decodes the file at `path`, or its first picture if it has several. The contents go to `take_contents` before any
+/// pixel is read, then the values of the rows from the top to `take_rows`, some rows at a time.
+Outcome decode(const std::string& path, const DecodeRequest& request, const TakeContents& take_contents,
                const std::function<void(std::span<const float>)>& take_rows);
 
 /// Encodes a picture in memory, as `file`. `texts` are those that EncodeRequest lists. `give_rows` fills in the values

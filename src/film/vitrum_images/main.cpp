@@ -46,20 +46,19 @@ void answer_decode(const FrameHeader& frame) {
   DecodeRequest request{};
   receive(&request, sizeof request);
   const std::string path = receive_text(frame.bytes - sizeof request);
-  send_done(decode(path, request.max_pixels, [](PictureSize size) { send(FrameKind::size, bytes_of(size)); },
+  const auto send_contents = [](const PictureContents& contents, const std::vector<std::string>& names) {
+    std::string texts;
+    for (const std::string& name : names) append_text(texts, name);
+    send(FrameKind::contents, bytes_of(contents), texts);
+  };
+  send_done(decode(path, request, send_contents,
                    [](std::span<const float> rows) { send(FrameKind::rows, bytes_of(rows)); }));
-}
-
-std::vector<std::string> split(const std::string& texts) {
-  std::vector<std::string> all;
-  for (size_t at = 0; at < texts.size(); at += all.back().size() + 1) all.emplace_back(texts.c_str() + at);
-  return all;
 }
 
 void answer_encode(const FrameHeader& frame) {
   EncodeRequest request{};
   receive(&request, sizeof request);
-  const std::vector<std::string> texts = split(receive_text(request.texts_bytes));
+  const std::vector<std::string> texts = split_texts(receive_text(request.texts_bytes));
   size_t left = frame.bytes - sizeof request - request.texts_bytes;
   std::vector<unsigned char> file;
   const Outcome outcome = encode(request, texts, [&left](std::span<float> rows) {

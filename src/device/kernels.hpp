@@ -1,7 +1,6 @@
 #pragma once
-// Kernels by name: source text put together, built for the scene's features, several programs at once.
+// Kernels by name: source text put together, built for the scene's features.
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -20,20 +19,19 @@ struct KernelFiles {
 std::string stages_source(const KernelFiles& files, const std::vector<std::string>& stages);
 
 /// The kernels of some stages, built for one device and one set of features.
-class Programs {
+class Kernels {
  public:
-  /// Builds `stages` as two programs side by side, photons and the rest: to look a program up in a driver's cache takes
-  /// as long as to preprocess it, so there are few. Throws Error.
-  Programs(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
-           const std::string& options);
+  /// Builds `stages` with `options`. Throws Error.
+  Kernels(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
+          const std::string& options);
 
   /// A kernel of one of the stages. A name that is not there is our bug.
-  cl::Kernel kernel(const std::string& stage, const std::string& name) const;
+  cl::Kernel get(const std::string& name) const;
   /// Seconds that building took.
   double build_seconds() const { return build_seconds_; }
 
  private:
-  std::map<std::string, cl::Program> programs_;  ///< by stage
+  cl::Program program_;
   double build_seconds_ = 0.0;
 };
 

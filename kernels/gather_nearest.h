@@ -1,11 +1,26 @@
-// Stage gather_nearest: the caustic's irradiance on the surfaces that scatter, from the k photons nearest to them.
-// Reads: surfaces, scatter [0, count), the photon map's tree. Adds to: shares (beauty and caustics).
-// The SIMD is inside the ray: eight photons or eight children of a node at a time.
+// The k photons nearest to a place. Included by gather.h. Eight photons or eight children of a node at a time.
 //
 // Near is what the fixed radius takes in first as it grows: a photon's distance, or 1 / PLANE_SHARE times its distance
 // off the plane where that is more; photons that came to the back are infinitely far. Boxes are tested by the same
 // sums in the same order as photons, and rounding keeps order, so that no photon is ever missed for a rounding error.
-#include "gather.h"
+#ifndef VITRUM_GATHER_NEAREST_H
+#define VITRUM_GATHER_NEAREST_H
+
+typedef struct {
+  uint count;
+  uint nearest;                // k
+  float max_radius;            // [m]
+  PhotonTreeData tree;
+  __global const float* nodes;
+  __global const float* leaves;
+} PhotonMap;
+
+#define PHOTON_MAP_PARAMETERS                                                                                        \
+  , const uint n_photons, const uint nearest, const float max_radius, const PhotonTreeData photon_tree,              \
+      __global const float *photon_nodes, __global const float *photon_leaves
+#define PHOTON_MAP { n_photons, nearest, max_radius, photon_tree, photon_nodes, photon_leaves }
+
+FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) { return (Mask)-1; }
 
 #define MAX_CANDIDATES 128           // a multiple of 8, at least enough_candidates(MAX_NEAREST) + 7
 #define STACK_SIZE (7 * PHOTON_TREE_LEVELS + 1)
@@ -175,21 +190,14 @@ FUNCTION Sums power_within(const PhotonTreeData* tree, __global const float* nod
   return sums;
 }
 
-// Power of the k nearest over the area of the circle around them (Jensen 2001, section 7.2), or of all those within
-// `max_radius` over its circle where they are fewer.
-__kernel void gather_nearest(const uint count, const uint stride, const uint k, const float max_radius,
-                             const PhotonTreeData tree_data, __global const float* nodes,
-                             __global const float* leaves, __global const float* surfaces,
-                             __global const float* scatter, __global float* shares) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const float3 diffuse = receiver_diffuse(scatter, stride, i);
-  if (is_black(diffuse)) return;
-  const float3 p = triple_at(surfaces, SURFACE_POSITION, stride, i);
-  const float3 n = triple_at(scatter, SCATTER_NORMAL, stride, i);
-  const PhotonTreeData tree = tree_data;
-  const float radius2 = nearest_radius2(&tree, nodes, leaves, p, n, k, max_radius * max_radius);
-  const Sums sums = power_within(&tree, nodes, leaves, p, n, radius2);
+// Irradiance [W/m2] at p on the side of the unit normal n: power of the k nearest over the area of the circle around them
+// (Jensen 2001, section 7.2), or of all those within the greatest radius over its circle where they are fewer.
+FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n) {
+  const float limit = map->max_radius * map->max_radius;
+  const float radius2 = nearest_radius2(&map->tree, map->nodes, map->leaves, p, n, map->nearest, limit);
+  const Sums sums = power_within(&map->tree, map->nodes, map->leaves, p, n, radius2);
   // Where k photons lie in one place, their irradiance is that of a circle of 0.1 um.
-  add_caustic(&sums, 0.318309886183790672f / max(radius2, 1e-14f), diffuse, shares, stride, i);
+  return total_power(&sums) * (0.318309886183790672f / max(radius2, 1e-14f));
 }
+
+#endif

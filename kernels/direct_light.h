@@ -1,12 +1,24 @@
-// Stage direct_light: the light of one lamp on the surfaces that scatter, with its shadow and highlight.
-// Reads: queue rays, surfaces, scatter [0, count), the scene's shapes and lights. Adds to: shares (beauty).
+// The light of one lamp on surfaces that scatter, with its shadow and highlight.
+#ifndef VITRUM_DIRECT_LIGHT_H
+#define VITRUM_DIRECT_LIGHT_H
+
 #include "exact.h"
-#include "film.h"
 #include "lights.h"
+#include "media.h"
 #include "surface.h"
 #if HAS_MESH
 #include "tree.h"
 #endif
+
+// What a surface does with light that comes to it, times the weight of the camera ray that sees it.
+typedef struct {
+  Vec3 normal;                 // shading normal on the side of the viewer
+  Vec3 diffuse;                // rho_d
+#if HAS_HIGHLIGHTS
+  Vec3 specular;               // rho_s (s + 2) / (2 pi)
+  Float shininess;             // s
+#endif
+} Scattering;
 
 // What reaches the surface from a place on the light, shadows left out.
 typedef struct {
@@ -57,85 +69,80 @@ FUNCTION Illumination illumination(const Scene scene, __global const LightData* 
   return in;
 }
 
-// `offset_u`, `offset_v`, `offset_face`: the sample's point of a sequence, shifted at random on each path.
-__kernel void direct_light(SCENE_PARAMETERS, const uint count, const uint stride, const uint light_index,
-                           const float offset_u, const float offset_v, const float offset_face,
-                           __global const float* rays, __global const float* surfaces, __global const float* scatter,
-                           __global float* shares) {
-  const uint i = get_global_id(0) * WIDTH;
-  if (i >= count) return;
-  const Vec3 diffuse = load3(scatter, SCATTER_DIFFUSE, stride, i);
-  Mask wanted = max_channel(diffuse) > 0.0f;
+// Radiance towards the viewer along `-direction`, from surfaces in `media`. `sample`: its point of a sequence, shifted at
+// random on each `path`. Adds to `shadow_rays` how many were traced.
+FUNCTION Vec3 direct_light(const Scene scene, const uint light_index, __global const CameraSample* sample,
+                           const Uint path, const Vec3 direction, const Uint media, const SurfacePacket* surface,
+                           const Scattering* scattering, const Mask active, uint* shadow_rays) {
+  const Vec3 dark = make_vec3(0.0f, 0.0f, 0.0f);
+  Mask wanted = max_channel(scattering->diffuse) > 0.0f;
 #if HAS_HIGHLIGHTS
-  const Vec3 specular = load3(scatter, SCATTER_SPECULAR, stride, i);
-  wanted |= max_channel(specular) > 0.0f;
+  wanted |= max_channel(scattering->specular) > 0.0f;
 #endif
-  wanted &= lanes_below(i, count);
-  if (!ANY(wanted)) return;
-  const Scene scene = SCENE;
+  wanted &= active;
+  if (!ANY(wanted)) return dark;
   __global const LightData* light = &scene.lights[light_index];
-  const SurfacePacket surface = load_surfaces(surfaces, stride, i);
-  const Vec3 normal = load3(scatter, SCATTER_NORMAL, stride, i);
 
   Float u = 0.0f;
   Float v = 0.0f;
   Float u_face = 0.0f;
 #if LIGHT_KINDS & ~((1 << LIGHT_POINT) | (1 << LIGHT_DIRECTIONAL))
-  const Uint path = hash_pair(load_bits(rays, RAY_PATH, stride, i), (Uint)light_index);
-  u = unit_float(hash32(path + 1)) + offset_u;
-  v = unit_float(hash32(path + 2)) + offset_v;
-  u_face = unit_float(hash32(path + 3)) + offset_face;
+  const Uint bits = hash_pair(path, (Uint)light_index);
+  u = unit_float(hash32(bits + 1)) + sample->light_u;
+  v = unit_float(hash32(bits + 2)) + sample->light_v;
+  u_face = unit_float(hash32(bits + 3)) + sample->light_face;
   u -= floor(u);
   v -= floor(v);
   u_face -= floor(u_face);
 #endif
-  const Illumination in = illumination(scene, light, surface.position, u, v, u_face);
+  const Illumination in = illumination(scene, light, surface->position, u, v, u_face);
+  const Vec3 normal = scattering->normal;
   const Float cos_theta = dot3(normal, in.direction);
   // The light must stand before the facet too, not only before the shading normal.
-  const Float side = dot3(surface.geometric_normal, in.direction) * dot3(surface.geometric_normal, normal);
+  const Float side = dot3(surface->geometric_normal, in.direction) * dot3(surface->geometric_normal, normal);
   wanted &= (cos_theta > 0.0f) & (side > 0.0f) & (max_channel(in.irradiance) > 0.0f);
-  if (!ANY(wanted)) return;
+  if (!ANY(wanted)) return dark;
 
+  *shadow_rays += lanes_set(wanted);
   RayPacket shadow;
-  shadow.origin = surface.position;
+  shadow.origin = surface->position;
   shadow.direction = in.direction;
   shadow.t_min = leaving_t_min(surface, in.direction);
   shadow.t_max = in.distance - larger((Float)light->clearance, 4e-7f * in.distance);
   shadow.t_max = in.distance == INFINITY ? INFINITY : shadow.t_max;
-  Mask lit = wanted & (exact_any_hit(scene, shadow, surface.from) == 0);
+  Mask lit = wanted & (exact_any_hit(scene, shadow, surface->from) == 0);
 #if HAS_MESH
-  for (uint lane = 0; lane < WIDTH; ++lane) {
-    if (LANE(lit, int, lane) == 0) continue;
-    const Ray ray = lane_ray(shadow, lane);
-    if (tree_any(&ray, scene.nodes, scene.leaves)) lit &= LANES != lane;
+  FOR_LANES(lane, lit) {
+    const Ray ray = lane_ray(&shadow, lane);
+    if (tree_any(&ray, scene.nodes, scene.leaves)) SET_LANE(lit, int, lane, 0);
   }
 #endif
 
   // [direct]
-  Vec3 reflected = scale3(0.318309886183790672f, diffuse);
+  Vec3 reflected = scale3(0.318309886183790672f, scattering->diffuse);
 #if HAS_HIGHLIGHTS
   // Phong: rho_s (s + 2) / (2 pi) max(0, w_o . w_r)^s, w_r the light's direction mirrored at the normal.
-  const Vec3 w_o = negate3(load3(rays, RAY_DIRECTION, stride, i));
   const Vec3 w_r = along3(negate3(in.direction), 2.0f * cos_theta, normal);
-  const Float lobe = dot3(w_o, w_r);
-  const Mask bright = lit & (lobe > 0.0f) & (max_channel(specular) > 0.0f);
+  const Float lobe = -dot3(direction, w_r);
+  const Mask bright = lit & (lobe > 0.0f) & (max_channel(scattering->specular) > 0.0f);
   if (ANY(bright)) {
-    const Float power = exp2(load1(scatter, SCATTER_SHININESS, stride, i) * log2(lobe > 0.0f ? lobe : 1.0f));
-    reflected = add3(reflected, scale3(bright ? power : 0.0f, specular));
+    const Float power = exp2(scattering->shininess * log2(lobe > 0.0f ? lobe : 1.0f));
+    reflected = add3(reflected, scale3(bright ? power : 0.0f, scattering->specular));
   }
 #endif
   Vec3 share = multiply3(reflected, scale3(lit ? cos_theta : 0.0f, in.irradiance));
 #if HAS_ABSORPTION
   // Glass casts shadows, so the light has come all the way through the medium that the surface lies in.
-  const Uint medium = load_bits(rays, RAY_MEDIA, stride, i) & 0xffu;
-  if (ANY(lit & (medium != 0))) {
-    const Vec3 sigma_a = FIELD3(scene.media, sigma_a, lit ? medium : (Uint)0);
-    const Float way = smaller(in.distance, 3e38f);
-    share = multiply3(share, make_vec3(transmittance(sigma_a.x, way), transmittance(sigma_a.y, way),
-                                       transmittance(sigma_a.z, way)));
+  Mask todo = lit & ((media & 0xffu) != 0);
+  while (ANY(todo)) {
+    const uint stack = LANE(media, uint, first_lane(todo));
+    const Mask here = todo & (media == stack);
+    todo &= here == 0;
+    share = select3(here, multiply3(share, media_transmittance(scene, stack, in.distance)), share);
   }
 #endif
   // [/direct]
-  store3(shares, SHARE_BEAUTY, stride, i,
-         select3(lit, add3(load3(shares, SHARE_BEAUTY, stride, i), share), load3(shares, SHARE_BEAUTY, stride, i)));
+  return select3(lit, share, dark);
 }
+
+#endif

@@ -1,11 +1,8 @@
-#include "device/programs.hpp"
+#include "device/kernels.hpp"
 
-#include <algorithm>
-#include <cassert>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <set>
 #include <sstream>
 
@@ -56,38 +53,24 @@ std::string stages_source(const KernelFiles& files, const std::vector<std::strin
   return out;
 }
 
-Programs::Programs(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
+Kernels::Kernels(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
                    const std::string& options) {
   const auto start = std::chrono::steady_clock::now();
   const std::string all_options = "-cl-std=CL1.2" + options;
-  std::map<std::string, std::vector<std::string>> groups;
-  for (const std::string& stage : stages) groups[stage.rfind("photon", 0) == 0 ? "photons" : "camera"].push_back(stage);
-  std::map<std::string, std::future<cl::Program>> building;
-  for (const auto& [group, members] : groups) {
-    const std::string source = stages_source(files, members);
-    if (!files.dump_folder.empty()) {
-      std::error_code ignored;  // what matters is whether the file can be written
-      std::filesystem::create_directories(files.dump_folder, ignored);
-      std::ofstream dump(files.dump_folder + "/" + group + ".cl");
-      dump << "// " << all_options << " -DWIDTH=" << device.width() << "\n" << source;
-      if (!dump)
-        throw Error({files.dump_folder, 0, 0}, "kernels cannot be written here", "give --dump-kernels another folder");
-    }
-    building[group] = std::async(std::launch::async, [&device, name = group + ".cl", source, all_options] {
-      return device.build(name, source, all_options);
-    });
+  // One program: drivers read their built-in functions anew for each, and compile one after the other anyway.
+  const std::string source = stages_source(files, stages);
+  if (!files.dump_folder.empty()) {
+    std::error_code ignored;  // what matters is whether the file can be written
+    std::filesystem::create_directories(files.dump_folder, ignored);
+    std::ofstream dump(files.dump_folder + "/vitrum.cl");
+    dump << "// " << all_options << " -DWIDTH=" << device.width() << "\n" << source;
+    if (!dump)
+      throw Error({files.dump_folder, 0, 0}, "kernels cannot be written here", "give --dump-kernels another folder");
   }
-  for (auto& [group, program] : building) {
-    const cl::Program built = program.get();
-    for (const std::string& stage : groups[group]) programs_[stage] = built;
-  }
+  program_ = device.build("vitrum.cl", source, all_options);
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-cl::Kernel Programs::kernel(const std::string& stage, const std::string& name) const {
-  const auto found = programs_.find(stage);
-  assert(found != programs_.end());
-  return cl::Kernel(found->second, name.c_str());
-}
+cl::Kernel Kernels::get(const std::string& name) const { return cl::Kernel(program_, name.c_str()); }
 
 }  // namespace vitrum

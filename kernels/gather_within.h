@@ -1,0 +1,83 @@
+// Photons within a fixed radius of a place. Included by gather.h.
+#ifndef VITRUM_GATHER_WITHIN_H
+#define VITRUM_GATHER_WITHIN_H
+
+typedef struct {
+  uint count;
+  GridData grid;
+  float radius;                // [m]
+  float4 low, high;            // corners of a box around all photons [m]
+  uint stride;
+  __global const uint* first_of_cell;
+  __global const float* photons;
+} PhotonMap;
+
+#define PHOTON_MAP_PARAMETERS                                                                                        \
+  , const uint n_photons, const GridData grid, const float radius, const float4 low, const float4 high,              \
+      const uint map_stride, __global const uint *first_of_cell, __global const float *map_photons
+#define PHOTON_MAP { n_photons, grid, radius, low, high, map_stride, first_of_cell, map_photons }
+
+// Where there may be photons at all.
+FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) {
+  return (p.x >= map->low.x - map->radius) & (p.y >= map->low.y - map->radius) & (p.z >= map->low.z - map->radius) &
+         (p.x <= map->high.x + map->radius) & (p.y <= map->high.y + map->radius) & (p.z <= map->high.z + map->radius);
+}
+
+// [gather]
+// Adds the photons [first, last): Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the irradiance
+// convolved with it.
+FUNCTION void add_photons(__global const float* map, uint stride, uint first, uint last, float3 p, float3 n,
+                          float inverse_r2, float max_off_plane, Sums* sums) {
+  for (uint i = first; i < last; i += 8) {
+    const float8 dx = vload8(0, map + PHOTON_X * stride + i) - p.x;
+    const float8 dy = vload8(0, map + PHOTON_Y * stride + i) - p.y;
+    const float8 dz = vload8(0, map + PHOTON_Z * stride + i) - p.z;
+    const float8 d2 = fma(dx, dx, fma(dy, dy, dz * dz));
+    const float8 nearness = 1.0f - d2 * inverse_r2;
+    const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7) + i;
+    int8 counts = (nearness > 0.0f) & (lane < last);
+    if (!any(counts)) continue;
+    const int8 packed = as_int8(vload8(0, map + PHOTON_DIRECTION * stride + i));
+    counts &= came_to_front(packed, n) & (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
+    const float8 weight = counts ? nearness : 0.0f;
+    // What lies behind the last photon may be no number, which a weight of 0 would not take out.
+    const float8 red = vload8(0, map + (PHOTON_POWER + 0) * stride + i);
+    const float8 green = vload8(0, map + (PHOTON_POWER + 1) * stride + i);
+    const float8 blue = vload8(0, map + (PHOTON_POWER + 2) * stride + i);
+    sums->red = fma(weight, counts ? red : 0.0f, sums->red);
+    sums->green = fma(weight, counts ? green : 0.0f, sums->green);
+    sums->blue = fma(weight, counts ? blue : 0.0f, sums->blue);
+  }
+}
+// [/gather]
+
+// Irradiance [W/m2] at p on the side of the unit normal n.
+FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n) {
+  const float inverse_r2 = 1.0f / (map->radius * map->radius);
+  const float max_off_plane = PLANE_SHARE * map->radius;
+  const int x = cell_coordinate(p.x, map->grid.inverse_cell);
+  const int y = cell_coordinate(p.y, map->grid.inverse_cell);
+  const int z = cell_coordinate(p.z, map->grid.inverse_cell);
+  const uint size_x = 1u << map->grid.log2_x;
+  const uint x_first = (uint)(x - 1) & (size_x - 1u);
+  // Three cells in a row, in one range unless the grid wraps between them.
+  const uint straight = min(x_first + 3u, size_x);
+  const uint wrapped = x_first + 3u - straight;
+  Sums sums = no_sums();
+  for (int dz = first_neighbour(map->grid.log2_z); dz <= last_neighbour(map->grid.log2_z); ++dz) {
+    for (int dy = first_neighbour(map->grid.log2_y); dy <= last_neighbour(map->grid.log2_y); ++dy) {
+      __global const uint* row = map->first_of_cell + row_of_cells(map->grid, y + dy, z + dz);
+      uint first = row[x_first];
+      uint last = row[straight];
+      for (uint part = 0; part < 2; ++part) {
+        add_photons(map->photons, map->stride, first, last, p, n, inverse_r2, max_off_plane, &sums);
+        if (wrapped == 0) break;
+        first = row[0];
+        last = row[wrapped];
+      }
+    }
+  }
+  return total_power(&sums) * (2.0f * 0.318309886183790672f * inverse_r2);
+}
+
+#endif

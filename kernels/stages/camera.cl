@@ -1,0 +1,174 @@
+// Stage camera: pixels from the eye to the film.
+// Reads: the scene, the camera, samples, the photon map. Adds to: the film's planes, counts.
+// A work-item minds WIDTH neighbouring pixels. Where glass splits their rays, the packet of reflected rays waits on a
+// stack of its own while the refracted ones are followed. So nothing depends on timing, and samples may be dealt out to
+// launches in any way: a pixel's shares are added up in the same order.
+#include "film.h"
+#include "gather.h"
+#include "sampler.h"
+#include "shade.h"
+#include "trace.h"
+
+// Rays through `pixel` for a sample. `jitter` 0: through the pixel's centre.
+FUNCTION CameraRays camera_rays(__global const CameraData* camera, __global const CameraSample* sample,
+                                const uint jitter, const uint media, const Uint pixel) {
+  const Uint row = pixel / camera->width;
+  const Uint column = pixel - row * camera->width;
+  const Uint path = hash_pair(pixel, (Uint)sample->seed);
+
+  // One point of a two-dimensional sequence for all pixels, shifted at random in each (Cranley and Patterson 1976).
+  const Float shifted_x = unit_float(hash32(path + 1)) + sample->x;
+  const Float shifted_y = unit_float(hash32(path + 2)) + sample->y;
+  const Float jx = jitter ? shifted_x - floor(shifted_x) : 0.5f;
+  const Float jy = jitter ? shifted_y - floor(shifted_y) : 0.5f;
+  const Float x = fma(TO_FLOAT(AS_INT(column)) + jx, (Float)camera->step_x, (Float)camera->left);
+  const Float y = fma(TO_FLOAT(AS_INT(row)) + jy, (Float)-camera->step_y, (Float)camera->top);
+
+  CameraRays rays;
+  rays.rays.origin = uniform3(camera->eye);
+  rays.rays.direction =
+      normalize3(along3(along3(uniform3(camera->forward), x, uniform3(camera->right)), y, uniform3(camera->up)));
+  rays.rays.t_min = 0.0f;
+  rays.rays.t_max = INFINITY;
+  rays.weight = make_vec3(1.0f, 1.0f, 1.0f);
+  rays.media = media;
+  rays.from = NO_INDEX;
+  rays.path = path;
+  rays.depth = 0;
+  rays.active = (Mask)-1;
+  return rays;
+}
+
+// The rest of what `child` needs to leave the surfaces that `parent` met. `side` tells its random numbers from those of
+// its sibling (every use hashes them again).
+FUNCTION void start_from(const SurfacePacket* surface, const CameraRays* parent, const uint side, CameraRays* child) {
+  child->rays.origin = surface->position;
+  child->rays.t_min = leaving_t_min(surface, child->rays.direction);
+  child->rays.t_max = INFINITY;
+  child->from = surface->from;
+  child->path = parent->path * 0x9e3779b1u + (0x7f4a7c15u + side);
+  child->depth = parent->depth + 1;
+}
+
+FUNCTION void count_rays(__global uint* count, const uint n) {
+  const uint before = atomic_add(&count[0], n);
+  if (before + n < before) atomic_inc(&count[1]);
+}
+
+// What the first surface is.
+FUNCTION void add_first_hits(const Scene scene, const SurfacePacket* surface, const Shading* shading, const uint i,
+                             const uint stride, __global float* film) {
+  for (uint lane = 0; lane < WIDTH; ++lane) {
+    const float t = LANE(surface->t, float, lane);
+    if (!(t < INFINITY)) continue;
+    const uint kind = scene.materials[LANE(surface->material, uint, lane)].surface;
+    const float3 diffuse = LANE3(shading->scattering.diffuse, lane);
+    const float3 albedo = kind == SURFACE_MIRROR || kind == SURFACE_DIELECTRIC ? (float3)(1.0f) : diffuse;
+    const float3 normal = LANE3(shading->scattering.normal, lane);
+    film[(FILM_ALBEDO + 0) * stride + i + lane] += albedo.x;
+    film[(FILM_ALBEDO + 1) * stride + i + lane] += albedo.y;
+    film[(FILM_ALBEDO + 2) * stride + i + lane] += albedo.z;
+    film[(FILM_NORMAL + 0) * stride + i + lane] += normal.x;
+    film[(FILM_NORMAL + 1) * stride + i + lane] += normal.y;
+    film[(FILM_NORMAL + 2) * stride + i + lane] += normal.z;
+    film[FILM_DEPTH * stride + i + lane] += t;
+  }
+}
+
+FUNCTION Vec3 load_film3(__global const float* film, uint plane, uint stride, uint i) {
+  return make_vec3(LOAD(film, plane * stride + i), LOAD(film, (plane + 1) * stride + i),
+                   LOAD(film, (plane + 2) * stride + i));
+}
+
+FUNCTION void store_film3(__global float* film, uint plane, uint stride, uint i, const Vec3 value) {
+  STORE(film, plane * stride + i, value.x);
+  STORE(film, (plane + 1) * stride + i, value.y);
+  STORE(film, (plane + 2) * stride + i, value.z);
+}
+
+BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits limits,
+                  __global const CameraData* camera_data, __global const CameraSample* samples,
+                  const uint first_sample, const uint last_sample, const uint jitter, const uint i,
+                  const uint last_pixel, const uint eye_media, const uint n_lights, const uint first_hits,
+                  const uint film_stride, __global float* restrict film, __global uint* restrict counts) {
+#if CAUSTICS != CAUSTICS_NONE
+  Vec3 caustics = load_film3(film, FILM_CAUSTICS, film_stride, i);
+#endif
+  Vec3 beauty = load_film3(film, FILM_BEAUTY, film_stride, i);
+  Float cut = LOAD(film, FILM_CUT * film_stride + i);
+  uint secondary_rays = 0;
+  uint shadow_rays = 0;
+
+  CameraRays waiting[CAMERA_STACK];
+  for (uint s = first_sample; s < last_sample; ++s) {
+    waiting[0] = camera_rays(camera_data, &samples[s], jitter, eye_media, LANES + i);
+    waiting[0].active = lanes_below(i, last_pixel);
+    uint n_waiting = 1;
+    while (n_waiting > 0) {
+      const CameraRays camera = waiting[--n_waiting];
+      const SurfacePacket surface = trace(scene, camera.rays, camera.from, camera.active, 1);
+      Shading shading = shade(scene, limits, &camera, &surface);
+      Vec3 radiance = shading.shown;
+#if HAS_DIRECT_LIGHT
+      for (uint light = 0; light < n_lights; ++light)
+        radiance = add3(radiance, direct_light(scene, light, &samples[s], camera.path, camera.rays.direction,
+                                               camera.media, &surface, &shading.scattering, camera.active,
+                                               &shadow_rays));
+#endif
+#if CAUSTICS != CAUSTICS_NONE
+      const Mask receives =
+          camera.active & (max_channel(shading.scattering.diffuse) > 0.0f) & within_reach(&map, surface.position);
+      if (map.count > 0 && ANY(receives)) {
+        Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
+        FOR_LANES(lane, receives)
+          set_lane3(&irradiance, lane, gathered_irradiance(&map, LANE3(surface.position, lane),
+                                                           LANE3(shading.scattering.normal, lane)));
+        const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));
+        radiance = select3(receives, add3(radiance, caustic), radiance);
+        caustics = select3(receives, add3(caustics, caustic), caustics);
+      }
+#endif
+      beauty = select3(camera.active, add3(beauty, radiance), beauty);
+      cut = camera.active ? cut + shading.cut : cut;
+      if (camera.depth == 0 && first_hits) add_first_hits(scene, &surface, &shading, i, film_stride, film);
+
+      if (ANY(shading.reflected.active)) {
+        start_from(&surface, &camera, 0, &shading.reflected);
+        secondary_rays += lanes_set(shading.reflected.active);
+        waiting[n_waiting++] = shading.reflected;
+      }
+#if HAS_DIELECTRIC
+      if (ANY(shading.refracted.active)) {
+        start_from(&surface, &camera, 1, &shading.refracted);
+        secondary_rays += lanes_set(shading.refracted.active);
+        waiting[n_waiting++] = shading.refracted;
+      }
+#endif
+    }
+  }
+
+  store_film3(film, FILM_BEAUTY, film_stride, i, beauty);
+#if CAUSTICS != CAUSTICS_NONE
+  store_film3(film, FILM_CAUSTICS, film_stride, i, caustics);
+#endif
+  STORE(film, FILM_CUT * film_stride + i, cut);
+  count_rays(counts + COUNT_SECONDARY, secondary_rays);
+  count_rays(counts + COUNT_SHADOW, shadow_rays);
+}
+
+// Samples [first_sample, last_sample) of pixels [first_pixel, last_pixel); first_pixel is a multiple of WIDTH, and the
+// film has room for whole packets. `eye_media`: the stack at the eye. `first_hits`: 1: albedo, normal and depth are
+// wanted.
+__kernel void camera(SCENE_PARAMETERS, __global const CameraData* camera_data, __global const CameraSample* samples,
+                     const uint first_sample, const uint last_sample, const uint jitter, const uint first_pixel,
+                     const uint last_pixel, const uint max_depth, const float min_weight, const float eye_index,
+                     const uint eye_media, const uint n_lights, const uint first_hits PHOTON_MAP_PARAMETERS,
+                     const uint film_stride, __global float* film, __global uint* counts) {
+  const uint i = first_pixel + get_global_id(0) * WIDTH;
+  if (i >= last_pixel) return;
+  const Scene scene = SCENE;
+  const PhotonMap map = PHOTON_MAP;
+  const CameraLimits limits = {max_depth, min_weight, eye_index};
+  trace_pixels(scene, map, limits, camera_data, samples, first_sample, last_sample, jitter, i, last_pixel, eye_media,
+               n_lights, first_hits, film_stride, film, counts);
+}

@@ -1,0 +1,330 @@
+// Stage photons: a pair of light and caster shoots photons, which are followed to their end.
+// Reads: the scene, the casters, the sequences. Writes: for each run of photons its stored ones and its PhotonRunData.
+// A work-item minds one run: WIDTH photons at a time, in registers from the light to where they end. The few that go
+// other ways than most wait until they fill a packet of their own, so that lanes rarely idle.
+#include "emission.h"
+#include "interact.h"
+#include "outcome.h"
+#include "photon_map.h"
+#include "trace.h"
+
+typedef struct {
+  Vec3 origin, direction;
+  Vec3 power;                  // [W]
+  Float t_min;
+  Uint stack, from, path;
+  Uint depth;                  // surfaces met
+  Mask alive;
+} Photons;
+
+// A sum of powers with what its roundings lost (Kahan), in each lane.
+typedef struct {
+  Vec3 sum, rest;
+} Tally;
+
+FUNCTION void add_compensated(Float* sum, Float* rest, const Float value) {
+  const Float corrected = value + *rest;
+  const Float next = *sum + corrected;
+  *rest = corrected - (next - *sum);
+  *sum = next;
+}
+
+FUNCTION void add_power(Tally* tally, const Mask which, const Vec3 power) {
+  add_compensated(&tally->sum.x, &tally->rest.x, which ? power.x : 0.0f);
+  add_compensated(&tally->sum.y, &tally->rest.y, which ? power.y : 0.0f);
+  add_compensated(&tally->sum.z, &tally->rest.z, which ? power.z : 0.0f);
+}
+
+FUNCTION void total_of_lanes(const Float sum, const Float rest, __global float* total, __global float* total_rest) {
+  float all = 0.0f;
+  float lost = 0.0f;
+  for (uint lane = 0; lane < WIDTH; ++lane) {
+    lost += LANE(rest, float, lane);
+    const float corrected = LANE(sum, float, lane) + lost;
+    const float next = all + corrected;
+    lost = corrected - (next - all);
+    all = next;
+  }
+  *total = all;
+  *total_rest = lost;
+}
+
+// Photons `first` to `first + WIDTH` of the sequences.
+FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __global const CasterData* casters,
+                         const uint n_casters, const uint caster, __global const SequenceData* sequences,
+                         const float share, const float upstream, const uint first, Aim* aim, int* aimed) {
+  Float u_light = 0.0f;
+  Float v_light = 0.0f;
+  Uint face = 0;
+#if LIGHT_KINDS & ~((1 << LIGHT_POINT) | (1 << LIGHT_DIRECTIONAL))
+  u_light = sequence_float(&sequences[3], first);
+  v_light = sequence_float(&sequences[4], first);
+  face = face_of_light(scene, light, sequence_float(&sequences[5], first));
+#endif
+  const LightPoint from = point_on_light(scene, light, u_light, v_light, face);
+  // From a point, all aim alike.
+  if (!*aimed) *aim = aim_at(&casters[caster], from, light->kind == LIGHT_POINT);
+  *aimed = light->kind == LIGHT_POINT || light->kind == LIGHT_DIRECTIONAL;
+
+  Float u[2];
+  u[0] = sequence_float(&sequences[0], first);
+  u[1] = sequence_float(&sequences[1], first);
+  const Emission emission = emit(light, casters, n_casters, caster, from, aim, u, upstream);
+  Photons photons;
+  photons.origin = emission.origin;
+  photons.direction = emission.direction;
+  photons.power = scale3(share, emission.power);
+  photons.t_min = light->clearance;
+  photons.stack = light->media;
+  photons.from = light->shape;
+  photons.path = sequence_bits(&sequences[2], first);
+  photons.depth = 0;
+  photons.alive = (Mask)-1;
+  return photons;
+}
+
+// What the surface does to the living photons: their outcome, and with that ALIVE their next ray. Adds what the media
+// before it took to `absorbed`.
+FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, Photons* photons,
+                       Tally* absorbed) {
+  const Mask alive = photons->alive;
+  const Vec3 direction = photons->direction;
+  const Uint stack = photons->stack;
+  const Mask entering = dot3(direction, surface->geometric_normal) < 0.0f;
+  Uint outcome = OUTCOME_LOST;
+  Vec3 next = direction;
+
+  // [photon]
+  Mask todo = alive & (surface->t < INFINITY);
+  while (ANY(todo)) {
+    const Encounter e = next_encounter(scene, todo, surface, stack, entering);
+    todo &= e.here == 0;
+#if HAS_ABSORPTION
+    // What the medium takes is counted by itself, not as a difference.
+    if (top_medium(e.stack) != 0) {
+      Vec3 left_over, taken;
+      media_attenuation(scene, e.stack, surface->t, &left_over, &taken);
+      add_power(absorbed, e.here, multiply3(photons->power, taken));
+      photons->power = select3(e.here, multiply3(photons->power, left_over), photons->power);
+    }
+#endif
+    if (e.material->surface == SURFACE_MIRROR) {
+      next = select3(e.here, mirrored(e, surface, direction), next);
+      outcome = e.here ? OUTCOME_ALIVE : outcome;
+#if HAS_DIELECTRIC
+    } else if (e.material->surface == SURFACE_DIELECTRIC) {
+      const Split split = split_at_dielectric(scene, e, surface, direction);
+      // One random number serves the first two choices: what a choice leaves of it is uniform again. Later ones are
+      // drawn anew, before its bits run out.
+      const Mask first_two = photons->depth < 2;
+      Float u = unit_float(photons->path);
+      if (ANY(e.here & (first_two == 0)))
+        u = first_two ? u : unit_float(hash_pair(photons->path, photons->depth));
+      const Mask reflect = u < split.R;
+      next = select3(e.here, split_chosen(&split, reflect, direction), next);
+      photons->stack =
+          e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : photons->stack;
+      const Float rest = (reflect ? u : u - split.R) / (reflect ? split.R : 1.0f - split.R);
+      const Uint rest_bits =
+          TO_UINT(smaller(rest, 0.99999994f) * 16777216.0f) << 8 | (hash32(photons->path) & 0xffu);
+      photons->path = (e.here & first_two) ? rest_bits : photons->path;
+      outcome = e.here ? OUTCOME_ALIVE : outcome;
+#endif
+    } else {
+      const int diffuse = e.material->surface == SURFACE_OPAQUE && is_diffuse(e.material);
+      const Uint caustic = photons->depth > 0 ? (Uint)OUTCOME_STORED : (Uint)OUTCOME_DIRECT;
+      outcome = e.here ? (diffuse ? caustic : (Uint)OUTCOME_ABSORBED) : outcome;
+    }
+  }
+  const Mask spent = (photons->depth + 1 >= max_depth) | (max_channel(photons->power) <= 0.0f);
+  outcome = (outcome == OUTCOME_ALIVE) & spent ? OUTCOME_CUT : outcome;
+  // [/photon]
+
+  photons->depth += alive ? (Uint)1 : (Uint)0;
+  photons->origin = surface->position;
+  photons->t_min = leaving_t_min(surface, next);
+  photons->from = surface->from;
+  // Those that end keep the direction that they came from.
+  photons->direction = next;
+  photons->alive = alive & (outcome == OUTCOME_ALIVE);
+  return alive ? outcome : (Uint)OUTCOME_ALIVE;
+}
+
+// Photons that wait for a packet of their own: field f of the k-th at [f][k].
+#define WAITING_FIELDS 14
+
+typedef struct {
+  float fields[WAITING_FIELDS][2 * WIDTH];
+  uint count;
+} Waiting;
+
+FUNCTION void wait_in(Waiting* waiting, const Photons* photons, const Mask which) {
+  FOR_LANES(lane, which) {
+    const uint k = waiting->count++;
+    waiting->fields[0][k] = LANE(photons->origin.x, float, lane);
+    waiting->fields[1][k] = LANE(photons->origin.y, float, lane);
+    waiting->fields[2][k] = LANE(photons->origin.z, float, lane);
+    waiting->fields[3][k] = LANE(photons->direction.x, float, lane);
+    waiting->fields[4][k] = LANE(photons->direction.y, float, lane);
+    waiting->fields[5][k] = LANE(photons->direction.z, float, lane);
+    waiting->fields[6][k] = LANE(photons->power.x, float, lane);
+    waiting->fields[7][k] = LANE(photons->power.y, float, lane);
+    waiting->fields[8][k] = LANE(photons->power.z, float, lane);
+    waiting->fields[9][k] = LANE(photons->t_min, float, lane);
+    waiting->fields[10][k] = LANE(photons->stack, float, lane);
+    waiting->fields[11][k] = LANE(photons->from, float, lane);
+    waiting->fields[12][k] = LANE(photons->path, float, lane);
+    waiting->fields[13][k] = LANE(photons->depth, float, lane);
+  }
+}
+
+// The last of those that wait, WIDTH of them at most.
+FUNCTION Photons take_waiting(Waiting* waiting) {
+  const uint taken = min(waiting->count, (uint)WIDTH);
+  waiting->count -= taken;
+  const uint k = waiting->count;
+  Photons photons;
+  photons.origin =
+      make_vec3(LOAD(waiting->fields[0], k), LOAD(waiting->fields[1], k), LOAD(waiting->fields[2], k));
+  photons.direction =
+      make_vec3(LOAD(waiting->fields[3], k), LOAD(waiting->fields[4], k), LOAD(waiting->fields[5], k));
+  photons.power = make_vec3(LOAD(waiting->fields[6], k), LOAD(waiting->fields[7], k), LOAD(waiting->fields[8], k));
+  photons.t_min = LOAD(waiting->fields[9], k);
+  photons.stack = AS_UINT(LOAD(waiting->fields[10], k));
+  photons.from = AS_UINT(LOAD(waiting->fields[11], k));
+  photons.path = AS_UINT(LOAD(waiting->fields[12], k));
+  photons.depth = AS_UINT(LOAD(waiting->fields[13], k));
+  photons.alive = lanes_below(0, taken);
+  return photons;
+}
+
+// Adds the lanes of `which` to the run's photons, of which there are `stored`. `fields`: the run's piece of the map.
+FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Mask which, const uint run_length,
+                            const uint stored, __global float* fields) {
+  const Float packed = AS_FLOAT(packed_direction(arrived));
+  __global float* x = fields + photon_in_run(run_length, 0, PHOTON_X) + stored;
+  __global float* y = fields + photon_in_run(run_length, 0, PHOTON_Y) + stored;
+  __global float* z = fields + photon_in_run(run_length, 0, PHOTON_Z) + stored;
+  __global float* direction = fields + photon_in_run(run_length, 0, PHOTON_DIRECTION) + stored;
+  __global float* red = fields + photon_in_run(run_length, 0, PHOTON_POWER + 0) + stored;
+  __global float* green = fields + photon_in_run(run_length, 0, PHOTON_POWER + 1) + stored;
+  __global float* blue = fields + photon_in_run(run_length, 0, PHOTON_POWER + 2) + stored;
+#if PACKS_LANES
+  pack_lanes(which, photons->origin.x, x);
+  pack_lanes(which, photons->origin.y, y);
+  pack_lanes(which, photons->origin.z, z);
+  pack_lanes(which, packed, direction);
+  pack_lanes(which, photons->power.x, red);
+  pack_lanes(which, photons->power.y, green);
+  pack_lanes(which, photons->power.z, blue);
+#else
+  uint k = 0;
+  FOR_LANES(lane, which) {
+    x[k] = LANE(photons->origin.x, float, lane);
+    y[k] = LANE(photons->origin.y, float, lane);
+    z[k] = LANE(photons->origin.z, float, lane);
+    direction[k] = LANE(packed, float, lane);
+    red[k] = LANE(photons->power.x, float, lane);
+    green[k] = LANE(photons->power.y, float, lane);
+    blue[k] = LANE(photons->power.z, float, lane);
+    ++k;
+  }
+#endif
+}
+
+// Photons [first, last) of the sequences, a run. `fields`: its piece of the map.
+BODY follow_run(const Scene scene, __global const LightData* light, __global const CasterData* casters,
+                const uint n_casters, const uint caster, __global const SequenceData* sequences, const float share,
+                const float upstream, const uint first, const uint last, const uint run_length, const uint max_depth,
+                __global float* restrict fields, __global PhotonRunData* restrict report) {
+  Tally power[OUTCOMES];
+  Uint ended[OUTCOMES];
+  for (uint k = 0; k < OUTCOMES; ++k) {
+    power[k].sum = power[k].rest = make_vec3(0.0f, 0.0f, 0.0f);
+    ended[k] = 0;
+  }
+  Uint surfaces = 0;
+  uint stored = 0;
+  // Those outside of all media and those inside wait apart, since they meet different surfaces.
+  Waiting waiting[2];
+  waiting[0].count = waiting[1].count = 0;
+  Aim aim;
+  int aimed = 0;
+  uint next = first;
+  while (next < last || waiting[0].count > 0 || waiting[1].count > 0) {
+    Photons photons;
+    const uint fuller = waiting[1].count >= waiting[0].count;
+    if (waiting[fuller].count >= WIDTH || next >= last) {
+      photons = take_waiting(&waiting[fuller]);
+    } else {
+      photons = emitted(scene, light, casters, n_casters, caster, sequences, share, upstream, next, &aim, &aimed);
+      photons.alive = lanes_below(next, last);
+      add_power(&power[OUTCOME_ALIVE], photons.alive, photons.power);
+      next += WIDTH;
+    }
+    uint n_alive;
+    // While many are alike, they go on together.
+    do {
+      RayPacket packet;
+      packet.origin = photons.origin;
+      packet.direction = photons.direction;
+      packet.t_min = photons.t_min;
+      packet.t_max = INFINITY;
+      const SurfacePacket surface = trace(scene, packet, photons.from, photons.alive, 0);
+      const Vec3 arrived = photons.direction;
+      const Uint outcome = interact(scene, &surface, max_depth, &photons, &power[OUTCOME_ABSORBED]);
+      for (uint k = OUTCOME_ALIVE + 1; k < OUTCOMES; ++k) {
+        const Mask here = outcome == k;
+        if (!ANY(here)) continue;
+        add_power(&power[k], here, photons.power);
+        ended[k] += here ? (Uint)1 : (Uint)0;
+        surfaces += here ? photons.depth : (Uint)0;
+        if (k == OUTCOME_STORED) {
+          store_photons(&photons, arrived, here, run_length, stored, fields);
+          stored += lanes_set(here);
+        }
+      }
+      // The fewer step aside, and all of them when few are left.
+      Mask inside = photons.alive & (photons.stack != 0);
+      Mask outside = photons.alive & (photons.stack == 0);
+      const uint n_inside = lanes_set(inside);
+      const uint n_outside = lanes_set(outside);
+      n_alive = max(n_inside, n_outside);
+      if (n_alive > WIDTH / 2) {
+        photons.alive = n_inside >= n_outside ? inside : outside;
+        inside = n_inside >= n_outside ? (Mask)0 : inside;
+        outside = n_inside >= n_outside ? outside : (Mask)0;
+      }
+      wait_in(&waiting[0], &photons, outside);
+      wait_in(&waiting[1], &photons, inside);
+    } while (n_alive > WIDTH / 2);
+  }
+
+  for (uint k = 0; k < OUTCOMES; ++k) {
+    total_of_lanes(power[k].sum.x, power[k].rest.x, &report->power[k][0], &report->power_rest[k][0]);
+    total_of_lanes(power[k].sum.y, power[k].rest.y, &report->power[k][1], &report->power_rest[k][1]);
+    total_of_lanes(power[k].sum.z, power[k].rest.z, &report->power[k][2], &report->power_rest[k][2]);
+    uint photons_ended = 0;
+    for (uint lane = 0; lane < WIDTH; ++lane) photons_ended += LANE(ended[k], uint, lane);
+    report->photons[k] = photons_ended;
+  }
+  report->photons[OUTCOME_ALIVE] = last - first;
+  uint surfaces_met = 0;
+  for (uint lane = 0; lane < WIDTH; ++lane) surfaces_met += LANE(surfaces, uint, lane);
+  report->surfaces = surfaces_met;
+}
+
+// The first `count` photons of the sequences, `run_length` to a run; runs are numbered from `first_run` on. `share`: of
+// the pair's power for each photon; `upstream`: see emission.h.
+__kernel void photons(SCENE_PARAMETERS, __global const CasterData* casters, const uint n_casters,
+                      __global const SequenceData* sequences, const uint light_index, const uint caster,
+                      const float share, const float upstream, const uint count, const uint run_length,
+                      const uint first_run, const uint max_depth, __global float* map, __global PhotonRunData* runs) {
+  const uint run = get_global_id(0);
+  const uint first = run * run_length;
+  if (first >= count) return;
+  const Scene scene = SCENE;
+  follow_run(scene, &scene.lights[light_index], casters, n_casters, caster, sequences, share, upstream, first,
+             min(first + run_length, count), run_length, max_depth,
+             map + photon_in_run(run_length, first_run + run, 0), &runs[first_run + run]);
+}

@@ -1,0 +1,23 @@
+// The first surface that rays meet: exact shapes WIDTH rays at a time, meshes one ray after the other.
+#ifndef VITRUM_TRACE_H
+#define VITRUM_TRACE_H
+
+#include "trace_exact.h"
+#if HAS_MESH
+#include "trace_mesh.h"
+#endif
+
+// `active`: the lanes that matter; others come out as anything. `textured`: texture coordinates are wanted.
+FUNCTION SurfacePacket trace(const Scene scene, const RayPacket packet, const Uint from, const Mask active,
+                             const int textured) {
+  SurfacePacket surface = trace_exact(scene, packet, from, textured);
+#if HAS_MESH
+  FOR_LANES(lane, active) {
+    const Ray ray = lane_ray(&packet, lane);
+    trace_mesh(scene, &ray, lane, &surface);
+  }
+#endif
+  return surface;
+}
+
+#endif
