@@ -15,13 +15,9 @@ FUNCTION float least(float8 v) {
 // Reads: the runs' photons. Writes: their cells; counts[block * buckets + bucket], the number of photons of each bucket
 // in each block of runs; bounds[block], the least and the greatest coordinates {x, y, z, -, x, y, z, -}. A bucket is
 // 2^bucket_shift cells.
-__kernel void sort_count(const GridData grid, const uint n_runs, const uint run_length, const uint blocks,
-                         const uint buckets, const uint bucket_shift, __global const PhotonRunData* restrict runs,
-                         __global float* restrict photons, __global uint* restrict counts,
-                         __global float8* restrict bounds) {
-  const uint block = get_global_id(0);
-  if (block >= blocks) return;
-  __global uint* own = counts + block * buckets;
+BODY count_block(const GridData grid, const uint n_runs, const uint run_length, const uint block, const uint blocks,
+                 const uint buckets, const uint bucket_shift, __global const PhotonRunData* restrict runs,
+                 __global float* restrict photons, __global uint* restrict own, __global float8* restrict bounds) {
   for (uint k = 0; k < buckets; ++k) own[k] = 0;
   float8 low_x = INFINITY, low_y = INFINITY, low_z = INFINITY;
   float8 low_minus_x = INFINITY, low_minus_y = INFINITY, low_minus_z = INFINITY;
@@ -51,18 +47,23 @@ __kernel void sort_count(const GridData grid, const uint n_runs, const uint run_
       for (uint k = 0; k < n; ++k) ++own[bucket[k]];
     }
   }
-  bounds[block] = (float8)(least(low_x), least(low_y), least(low_z), 0.0f, -least(low_minus_x), -least(low_minus_y),
-                           -least(low_minus_z), 0.0f);
+  *bounds = (float8)(least(low_x), least(low_y), least(low_z), 0.0f, -least(low_minus_x), -least(low_minus_y),
+                     -least(low_minus_z), 0.0f);
+}
+
+__kernel void sort_count(const GridData grid, const uint n_runs, const uint run_length, const uint blocks,
+                         const uint buckets, const uint bucket_shift, __global const PhotonRunData* runs,
+                         __global float* photons, __global uint* counts, __global float8* bounds) {
+  const uint block = get_global_id(0);
+  if (block < blocks)
+    count_block(grid, n_runs, run_length, block, blocks, buckets, bucket_shift, runs, photons, counts + block * buckets,
+                bounds + block);
 }
 
 // Moves each photon into its bucket. places[block * buckets + bucket]: where the next one goes.
-__kernel void sort_into_buckets(const uint n_runs, const uint run_length, const uint blocks, const uint buckets,
-                                const uint bucket_shift, __global const PhotonRunData* restrict runs,
-                                __global const float* restrict photons, __global uint* restrict places,
-                                __global float8* restrict bucketed) {
-  const uint block = get_global_id(0);
-  if (block >= blocks) return;
-  __global uint* own = places + block * buckets;
+BODY move_block(const uint n_runs, const uint run_length, const uint block, const uint blocks, const uint bucket_shift,
+                __global const PhotonRunData* restrict runs, __global const float* restrict photons,
+                __global uint* restrict own, __global float8* restrict bucketed) {
   const uint last = first_run_of(block + 1, blocks, n_runs);
   for (uint run = first_run_of(block, blocks, n_runs); run < last; ++run) {
     const uint stored = runs[run].photons[OUTCOME_STORED];
@@ -77,15 +78,21 @@ __kernel void sort_into_buckets(const uint n_runs, const uint run_length, const 
   }
 }
 
+__kernel void sort_into_buckets(const uint n_runs, const uint run_length, const uint blocks, const uint buckets,
+                                const uint bucket_shift, __global const PhotonRunData* runs,
+                                __global const float* photons, __global uint* places, __global float8* bucketed) {
+  const uint block = get_global_id(0);
+  if (block < blocks)
+    move_block(n_runs, run_length, block, blocks, bucket_shift, runs, photons, places + block * buckets, bucketed);
+}
+
 // Sorts each bucket into its cells, from rows to columns. first_of_bucket has one more entry than there are buckets.
 // Writes: first_of_cell, where each cell starts, and one more, the number of photons; map. next_of_cell: room for the
 // cells. The map has room for whole groups of eight.
-__kernel void sort_into_cells(const uint buckets, const uint bucket_shift,
-                              __global const uint* restrict first_of_bucket, __global const float8* restrict bucketed,
-                              __global uint* restrict next_of_cell, __global uint* restrict first_of_cell,
-                              const uint stride, __global float* restrict map) {
-  const uint bucket = get_global_id(0);
-  if (bucket >= buckets) return;
+BODY sort_bucket(const uint bucket, const uint buckets, const uint bucket_shift,
+                 __global const uint* restrict first_of_bucket, __global const float8* restrict bucketed,
+                 __global uint* restrict next_of_cell, __global uint* restrict first_of_cell, const uint stride,
+                 __global float* restrict map) {
   const uint cells = 1u << bucket_shift;
   const uint first_cell = bucket << bucket_shift;
   const uint first = first_of_bucket[bucket];
@@ -113,4 +120,12 @@ __kernel void sort_into_cells(const uint buckets, const uint bucket_shift,
     map[(PHOTON_POWER + 1) * stride + i] = photon.s5;
     map[(PHOTON_POWER + 2) * stride + i] = photon.s6;
   }
+}
+
+__kernel void sort_into_cells(const uint buckets, const uint bucket_shift, __global const uint* first_of_bucket,
+                              __global const float8* bucketed, __global uint* next_of_cell,
+                              __global uint* first_of_cell, const uint stride, __global float* map) {
+  const uint bucket = get_global_id(0);
+  if (bucket < buckets)
+    sort_bucket(bucket, buckets, bucket_shift, first_of_bucket, bucketed, next_of_cell, first_of_cell, stride, map);
 }

@@ -104,7 +104,7 @@ void run_info(const SceneArguments& arguments) {
   const size_t shapes = bytes(data.spheres) + bytes(data.flats) + bytes(data.triangles) + bytes(data.positions) +
                         bytes(data.normals) + bytes(data.texcoords);
   std::printf("\nmemory     shapes %.3f MiB, textures %.3f MiB", static_cast<double>(shapes) / 0x1p20,
-              static_cast<double>(bytes(data.texels)) / 0x1p20);
+              features.textures ? static_cast<double>(bytes(texel_data(scene).texels)) / 0x1p20 : 0.0);
   if (features.mesh) {
     const Tree tree = build_tree(data.tree_triangles);
     std::printf(", tree %.3f MiB (built in %.2f s)", static_cast<double>(tree.statistics.bytes) / 0x1p20,

@@ -86,13 +86,13 @@ void run_render(const RenderArguments& arguments) {
   });
   Scene scene = arguments.scene.load();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const std::shared_future<void> textures_ready = std::async(std::launch::async, [&scene] { load_textures(scene); });
+  options.textures_ready = std::async(std::launch::async, [&scene] { load_textures(scene); });
   const std::unique_ptr<Device> device = waking.get();
   note("device: " + device->info().name);
 
-  textures_ready.get();
   RenderResult result = render(scene, *device, options);
   result.seconds["load"] = load_seconds;
+  result.seconds["first pixels"] = std::chrono::duration<double>(result.first_pixels - start).count();
 
   const auto write_start = std::chrono::steady_clock::now();
   std::vector<PictureLayer> layers;

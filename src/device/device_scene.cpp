@@ -25,13 +25,15 @@ DeviceScene upload(Device& device, const SceneData& data, const Features& featur
     d.faces = device.upload(data.faces, "lights");
   }
   d.has_textures = features.textures;
-  if (features.textures) {
-    d.textures = device.upload(data.textures, "textures");
-    d.texels = device.upload(data.texels, "textures");
-  }
+  if (features.textures) d.upload_texels(device, {});
   d.camera = device.upload(std::vector<kernel::CameraData>{data.camera}, "camera");
   if (features.caustics) d.casters = device.upload(data.casters, "lights");
   return d;
+}
+
+void DeviceScene::upload_texels(Device& device, const TexelData& data) {
+  textures = device.upload(data.textures, "textures");
+  texels = device.upload(data.texels, "textures");
 }
 
 unsigned DeviceScene::set_arguments(cl::Kernel& kernel) const {

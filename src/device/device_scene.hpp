@@ -22,7 +22,7 @@ struct DeviceScene {
   Buffer<kernel::TriangleData> triangles;
   Buffer<float> positions, normals, texcoords;
   Buffer<kernel::LightFace> faces;
-  // With Features::textures.
+  // With Features::textures; without texels until upload_texels.
   bool has_textures = false;
   Buffer<kernel::TextureData> textures;
   Buffer<float> texels;
@@ -32,9 +32,11 @@ struct DeviceScene {
 
   /// Sets the scene's arguments, the first of every kernel that takes them; returns the index of the next argument.
   unsigned set_arguments(cl::Kernel& kernel) const;
+  /// Copies the textures to the device; before the first kernel that reads them.
+  void upload_texels(Device& device, const TexelData& data);
 };
 
-/// Copies the scene to the device. `tree` is that of data.tree_triangles, or nullptr without meshes.
+/// Copies the scene to the device, but for its textures. `tree` is that of data.tree_triangles, or nullptr without meshes.
 DeviceScene upload(Device& device, const SceneData& data, const Features& features, const Tree* tree);
 
 }  // namespace vitrum

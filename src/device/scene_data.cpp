@@ -54,7 +54,6 @@ class Builder {
     add_shapes();
     add_lights();
     number_shapes();
-    add_textures();
     add_camera();
     find_bounds();
     add_casters();
@@ -321,26 +320,6 @@ class Builder {
       if (light.kind == LIGHT_QUAD || light.kind == LIGHT_DISC) light.shape += spheres;
   }
 
-  void add_textures() {
-    if (!features_.textures) return;
-    for (const Texture& t : scene_.textures) {
-      kernel::TextureData d{};
-      d.first_texel = static_cast<uint32_t>(data_.texels.size() / 3);
-      d.width = t.width;
-      d.height = t.height;
-      d.bilinear = t.filter == TextureFilter::bilinear;
-      d.clamp = t.clamp;
-      for (int i = 0; i < 2; ++i) {
-        d.scale[i] = static_cast<float>(t.scale[i]);
-        d.offset[i] = static_cast<float>(t.offset[i]);
-      }
-      if (data_.texels.size() / 3 + t.texels.size() > (1u << 29))
-        throw Error(t.where, "the scene's textures hold more than 2^29 texels", "use smaller pictures");
-      for (const glm::vec3& texel : t.texels) data_.texels.insert(data_.texels.end(), {texel.x, texel.y, texel.z});
-      data_.textures.push_back(d);
-    }
-  }
-
   void add_camera() {
     const Camera& camera = scene_.camera;
     kernel::CameraData& d = data_.camera;
@@ -450,5 +429,26 @@ class Builder {
 }  // namespace
 
 SceneData scene_data(const Scene& scene, const Features& features) { return Builder(scene, features).build(); }
+
+TexelData texel_data(const Scene& scene) {
+  TexelData data;
+  for (const Texture& t : scene.textures) {
+    kernel::TextureData d{};
+    d.first_texel = static_cast<uint32_t>(data.texels.size() / 3);
+    d.width = t.width;
+    d.height = t.height;
+    d.bilinear = t.filter == TextureFilter::bilinear;
+    d.clamp = t.clamp;
+    for (int i = 0; i < 2; ++i) {
+      d.scale[i] = static_cast<float>(t.scale[i]);
+      d.offset[i] = static_cast<float>(t.offset[i]);
+    }
+    if (data.texels.size() / 3 + t.texels.size() > (1u << 29))
+      throw Error(t.where, "the scene's textures hold more than 2^29 texels", "use smaller pictures");
+    for (const glm::vec3& texel : t.texels) data.texels.insert(data.texels.end(), {texel.x, texel.y, texel.z});
+    data.textures.push_back(d);
+  }
+  return data;
+}
 
 }  // namespace vitrum

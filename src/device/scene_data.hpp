@@ -24,8 +24,6 @@ struct SceneData {
   std::vector<kernel::InterfaceData> interfaces;  ///< [from * media.size() + into]
   std::vector<kernel::LightData> lights;          ///< in the order of Scene::lights
   std::vector<kernel::LightFace> faces;
-  std::vector<kernel::TextureData> textures;
-  std::vector<float> texels;
   kernel::CameraData camera{};
   std::vector<kernel::CasterData> casters;        ///< what photons are aimed at
   uint32_t eye_media = 0;                         ///< stack of media at the eye
@@ -36,5 +34,14 @@ struct SceneData {
 
 /// Throws Error where the scene has more than the kernels can number (255 media).
 SceneData scene_data(const Scene& scene, const Features& features);
+
+/// The textures with all their texels, r, g and b each.
+struct TexelData {
+  std::vector<kernel::TextureData> textures;
+  std::vector<float> texels;
+};
+
+/// Apart from the rest, since the texels come later (scene/textures.hpp). Throws Error for more than 2^29 of them.
+TexelData texel_data(const Scene& scene);
 
 }  // namespace vitrum

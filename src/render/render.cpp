@@ -68,7 +68,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   const Kernels kernels(device, options.kernels, stages_for(features), features.build_options());
   result.seconds["build"] = kernels.build_seconds();
   const auto upload_start = std::chrono::steady_clock::now();
-  const DeviceScene device_scene = upload(device, data, features, features.mesh ? &tree : nullptr);
+  DeviceScene device_scene = upload(device, data, features, features.mesh ? &tree : nullptr);
   result.seconds["upload"] = seconds_since(upload_start);
   const KernelContext context{device, kernels, scene, data, device_scene, features};
 
@@ -102,11 +102,17 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
         result.film.add(pass, "photons", 1, photon_dots(read_photons(device, photon_pass->map()), data.camera), 1.0);
       }
     }
+    if (pass == 0 && features.textures) {
+      if (options.textures_ready.valid()) options.textures_ready.get();
+      device_scene.upload_texels(device, texel_data(scene));
+    }
     const uint32_t first = static_cast<uint32_t>(samples * pass / passes);
     const uint32_t last = static_cast<uint32_t>(samples * (pass + 1) / passes);
     for (uint32_t sample = first; sample < last; sample += samples_per_download) {
       const uint32_t count = std::min(samples_per_download, last - sample);
       camera.run(replicate, sample, count, samples, photon_pass ? &photon_pass->map() : nullptr, [&](double d) {
+        if (result.first_pixels == std::chrono::steady_clock::time_point())
+          result.first_pixels = std::chrono::steady_clock::now();
         done(photon_share + (1.0 - photon_share) * (sample - first + d * count) / (last - first));
       });
       const std::vector<float> planes = camera.take_film();

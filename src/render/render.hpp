@@ -1,6 +1,8 @@
 #pragma once
 // Renders a scene: passes of photons and camera rays, summed in a film.
 
+#include <chrono>
+#include <future>
 #include <map>
 #include <string>
 #include <vector>
@@ -25,6 +27,8 @@ View view_of_name(const std::string& name);
 struct RenderOptions {
   std::vector<View> views = {View::beauty};
   KernelFiles kernels;
+  /// Ready when the scene's textures have their texels (scene/textures.hpp), or has failed; none: they have them.
+  std::shared_future<void> textures_ready;
 };
 
 /// What a render gave and what it took.
@@ -35,11 +39,12 @@ struct RenderResult {
   Features features;
   double photon_radius = 0.0;   ///< of the last pass [m]
   std::map<std::string, double> seconds;    ///< wall time by stage: tree, build, upload, and the kernels' own
+  std::chrono::steady_clock::time_point first_pixels;  ///< when the first of them were there
   std::map<std::string, uint64_t> memory;   ///< device buffers by purpose [bytes]
   int passes = 0;
 };
 
-/// Renders `scene` on `device`. The same scene and seed give the same bits, whatever the threads and the group size.
+/// Renders `scene` on `device`. Its textures' texels may be decoded by another thread meanwhile. The same scene and seed give the same bits, whatever the threads and the group size.
 /// Throws Error.
 RenderResult render(const Scene& scene, Device& device, const RenderOptions& options);
 
