@@ -7,15 +7,15 @@ typedef struct {
   GridData grid;
   float radius;                // [m]
   float4 low, high;            // corners of a box around all photons [m]
-  uint stride;
   __global const uint* first_of_cell;
+  __global const BucketData* buckets;
   __global const float* photons;
 } PhotonMap;
 
 #define PHOTON_MAP_PARAMETERS                                                                                        \
   , const uint n_photons, const GridData grid, const float radius, const float4 low, const float4 high,              \
-      const uint map_stride, __global const uint *first_of_cell, __global const float *map_photons
-#define PHOTON_MAP { n_photons, grid, radius, low, high, map_stride, first_of_cell, map_photons }
+      __global const uint *first_of_cell, __global const BucketData *photon_buckets, __global const float *map_photons
+#define PHOTON_MAP { n_photons, grid, radius, low, high, first_of_cell, photon_buckets, map_photons }
 
 // Where there may be photons at all.
 FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) {
@@ -24,8 +24,8 @@ FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) {
 }
 
 // [gather]
-// Adds the photons [first, last): Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the irradiance
-// convolved with it.
+// Adds the photons [first, last) of a bucket: Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the
+// irradiance convolved with it.
 FUNCTION void add_photons(__global const float* map, uint stride, uint first, uint last, float3 p, float3 n,
                           float inverse_r2, float max_off_plane, Sums* sums) {
   for (uint i = first; i < last; i += 8) {
@@ -53,27 +53,34 @@ FUNCTION void add_photons(__global const float* map, uint stride, uint first, ui
 
 // Irradiance [W/m2] at p on the side of the unit normal n.
 FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n) {
+  const GridData grid = map->grid;
   const float inverse_r2 = 1.0f / (map->radius * map->radius);
   const float max_off_plane = PLANE_SHARE * map->radius;
-  const int x = cell_coordinate(p.x, map->grid.inverse_cell);
-  const int y = cell_coordinate(p.y, map->grid.inverse_cell);
-  const int z = cell_coordinate(p.z, map->grid.inverse_cell);
-  const uint size_x = 1u << map->grid.log2_x;
+  const int x = cell_coordinate(p.x, grid.inverse_cell);
+  const int y = cell_coordinate(p.y, grid.inverse_cell);
+  const int z = cell_coordinate(p.z, grid.inverse_cell);
+  const uint size_x = 1u << grid.log2_x;
   const uint x_first = (uint)(x - 1) & (size_x - 1u);
-  // Three cells in a row, in one range unless the grid wraps between them.
-  const uint straight = min(x_first + 3u, size_x);
-  const uint wrapped = x_first + 3u - straight;
   Sums sums = no_sums();
-  for (int dz = first_neighbour(map->grid.log2_z); dz <= last_neighbour(map->grid.log2_z); ++dz) {
-    for (int dy = first_neighbour(map->grid.log2_y); dy <= last_neighbour(map->grid.log2_y); ++dy) {
-      __global const uint* row = map->first_of_cell + row_of_cells(map->grid, y + dy, z + dz);
-      uint first = row[x_first];
-      uint last = row[straight];
-      for (uint part = 0; part < 2; ++part) {
-        add_photons(map->photons, map->stride, first, last, p, n, inverse_r2, max_off_plane, &sums);
-        if (wrapped == 0) break;
-        first = row[0];
-        last = row[wrapped];
+  for (int dz = first_neighbour(grid.log2_z); dz <= last_neighbour(grid.log2_z); ++dz) {
+    for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
+      // Three cells in a row, in one range unless the grid wraps or a bucket ends between them.
+      const uint row = row_of_cells(grid, y + dy, z + dz);
+      uint cell = row + x_first;
+      for (uint left = 3; left > 0;) {
+        const uint bucket = cell >> grid.bucket_shift;
+        const uint bucket_end = (bucket + 1) << grid.bucket_shift;
+        const uint end = min(cell + left, min(row + size_x, bucket_end));
+        __global const uint* first_of = map->first_of_cell + bucket;
+        const uint first = first_of[cell];
+        const uint last = first_of[end];
+        if (first < last) {
+          const BucketData data = map->buckets[bucket];
+          add_photons(map->photons + (ulong)data.start * BUCKET_UNIT, data.stride, first, last, p, n, inverse_r2,
+                      max_off_plane, &sums);
+        }
+        left -= end - cell;
+        cell = end == row + size_x ? row : end;
       }
     }
   }

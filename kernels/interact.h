@@ -19,21 +19,37 @@ typedef struct {
   int entering;                // 1: the rays meet the front
 } Encounter;
 
+// What tells groups apart, in one number: material, side, and with a single medium also whether the rays are in it.
+FUNCTION Uint encounter_keys(const SurfacePacket* surface, const Uint stack, const Mask entering) {
+  const Uint side = surface->material << 1 | (entering ? (Uint)1 : (Uint)0);
+#if HAS_MEDIA_STACK
+  return side;
+#else
+  return side << 8 | stack;
+#endif
+}
+
 // The group of the first lane that is still to do.
-FUNCTION Encounter next_encounter(const Scene scene, const Mask todo, const SurfacePacket* surface, const Uint stack,
-                                  const Mask entering) {
+FUNCTION Encounter next_encounter(const Scene scene, const Mask todo, const SurfacePacket* surface, const Uint keys,
+                                  const Uint stack) {
   const uint lane = first_lane(todo);
-  const uint material = LANE(surface->material, uint, lane);
+  uint key = LANE(keys, uint, lane);
   Encounter e;
+  e.here = todo & (keys == key);
+#if HAS_MEDIA_STACK
   e.stack = LANE(stack, uint, lane);
-  e.entering = LANE(entering, int, lane) != 0;
-  e.here = todo & (surface->material == material) & (stack == e.stack) & (e.entering ? entering : entering == 0);
+  e.here &= stack == e.stack;
+#else
+  e.stack = key & 0xffu;
+  key >>= 8;
+#endif
   e.contacts = 0;
 #if HAS_CONTACTS
   e.contacts = LANE(surface->contacts, uint, lane);
   e.here &= surface->contacts == e.contacts;
 #endif
-  e.material = &scene.materials[material];
+  e.entering = key & 1u;
+  e.material = &scene.materials[key >> 1];
   return e;
 }
 

@@ -16,7 +16,7 @@ typedef struct {
   float power_rest[OUTCOMES][3];
   uint photons[OUTCOMES];      // by outcome
   uint surfaces;               // met by all of them
-  uint pad;
+  float low[3], high[3];       // box around the stored [m]
 } PhotonRunData;
 
 #endif

@@ -1,9 +1,12 @@
 // The photon map: photons as they are stored, and the grid that they are sorted into.
 //
-// As they are stored, each run (stages/photons.cl) has a piece of the map of its own, field f of photon i of run r at
-// [photon_in_run(run_length, r, f) + i]. Between two steps of the sort, a photon is one float8 of its fields, so that
-// moving it costs one cache line. Sorted, the map is a structure of arrays, field f of photon i at [f * stride + i], so
-// that eight neighbours are read at once.
+// As they are stored, each run (stages/photons.cl) has a piece of a buffer of its own, field f of photon i of run r at
+// [photon_in_run(run_length, r, f) + i].
+//
+// The map is divided into buckets of 2^bucket_shift neighbouring cells, each with room of its own, in which it is sorted.
+// Until then its photons are rows of PHOTON_ROW floats; then field f of photon i of the bucket is at
+// [BUCKET_UNIT * start + f * stride + i], so that eight neighbours are read at once. Where a cell starts in its bucket is
+// at first_of_cell[cell + bucket], since each bucket has one more entry: where its last cell ends.
 //
 // The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
 // far photons cost nothing but a failed test of distance. Of the 3 x 3 x 3 cells around a place each is visited once,
@@ -23,8 +26,14 @@
 #define PHOTON_DIRECTION 3     // uint: packed
 #define PHOTON_POWER 4         // 3 floats [W]
 #define PHOTON_FIELDS 7
-#define PHOTON_CELL 7          // uint: of the grid; between the steps of the sort only
+#define PHOTON_CELL 7          // uint: of the grid; for the sort
 #define PHOTON_ROW 8
+
+#define BUCKET_UNIT 16u        // floats
+typedef struct {
+  uint start;                  // in units
+  uint stride;                 // of the sorted photons' fields
+} BucketData;
 
 // Runs have room for a packet beyond their photons, so that packets may be written whole.
 #define RUN_MARGIN 16u
@@ -32,10 +41,11 @@ FUNCTION ulong photon_in_run(uint run_length, uint run, uint field) {
   return ((ulong)run * PHOTON_ROW + field) * (run_length + RUN_MARGIN);
 }
 
-// Cell size [m] as its inverse; log2 of the number of cells along each axis.
+// Cell size [m] as its inverse; log2 of the number of cells along each axis, and of those in a bucket.
 typedef struct {
   float inverse_cell;
   uint log2_x, log2_y, log2_z;
+  uint bucket_shift;
 } GridData;
 
 // A node: for each child, the box around its photons and that around their packed directions; row r of child j at
@@ -61,9 +71,9 @@ typedef struct {
 
 // Far away, cells are told apart no longer, which only makes candidates.
 FUNCTION int cell_coordinate(float x, float inverse_cell) { return (int)floor(clamp(x * inverse_cell, -1e9f, 1e9f)); }
-FUNCTION uint8 cell_coordinates(float8 x, float inverse_cell) {
-  const float8 cell = floor(x * inverse_cell);
-  return as_uint8(convert_int8(cell > 1e9f ? 1e9f : cell < -1e9f ? -1e9f : cell));
+FUNCTION Uint cell_coordinates(Float x, float inverse_cell) {
+  const Float cell = floor(x * inverse_cell);
+  return AS_UINT(TO_INT(cell > 1e9f ? 1e9f : cell < -1e9f ? -1e9f : cell));
 }
 
 FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
@@ -72,11 +82,10 @@ FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
   return ((z << grid.log2_y) | y) << grid.log2_x;
 }
 
-// The cells of eight places.
-FUNCTION uint8 cells_of(const GridData grid, float8 x, float8 y, float8 z) {
-  const uint8 ix = cell_coordinates(x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
-  const uint8 iy = cell_coordinates(y, grid.inverse_cell) & ((1u << grid.log2_y) - 1u);
-  const uint8 iz = cell_coordinates(z, grid.inverse_cell) & ((1u << grid.log2_z) - 1u);
+FUNCTION Uint cells_of(const GridData grid, const Vec3 p) {
+  const Uint ix = cell_coordinates(p.x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
+  const Uint iy = cell_coordinates(p.y, grid.inverse_cell) & ((1u << grid.log2_y) - 1u);
+  const Uint iz = cell_coordinates(p.z, grid.inverse_cell) & ((1u << grid.log2_z) - 1u);
   return ((iz << grid.log2_y) | iy) << grid.log2_x | ix;
 }
 

@@ -133,7 +133,8 @@ FUNCTION Vec3 normalize3(Vec3 a) { return scale3(1.0f / length3(a), a); }
 // fmin and fmax spend instructions on NaN; here the second argument comes out where either is NaN.
 FUNCTION Float larger(Float a, Float b) { return a > b ? a : b; }
 FUNCTION Float smaller(Float a, Float b) { return a < b ? a : b; }
-FUNCTION Float magnitude(Float a) { return larger(a, -a); }
+FUNCTION Vec3 larger3(Vec3 a, Vec3 b) { return make_vec3(larger(a.x, b.x), larger(a.y, b.y), larger(a.z, b.z)); }
+FUNCTION Vec3 smaller3(Vec3 a, Vec3 b) { return make_vec3(smaller(a.x, b.x), smaller(a.y, b.y), smaller(a.z, b.z)); }
 
 #ifdef __OPENCL_VERSION__
 // A bit for each lane of a mask that is set.
@@ -183,6 +184,6 @@ FUNCTION void set_lane3(Vec3* v, uint lane, float3 to) {
 #endif
 
 FUNCTION Float max_channel(Vec3 a) { return larger(larger(a.x, a.y), a.z); }
-FUNCTION Float largest3(Vec3 a) { return larger(larger(magnitude(a.x), magnitude(a.y)), magnitude(a.z)); }
+FUNCTION Float largest3(Vec3 a) { return larger(larger(fabs(a.x), fabs(a.y)), fabs(a.z)); }
 
 #endif

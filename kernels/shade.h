@@ -55,9 +55,10 @@ FUNCTION Shading shade(const Scene scene, const CameraLimits limits, const Camer
   s.reflected.media = 0;
   s.refracted = s.reflected;
 
+  const Uint keys = encounter_keys(surface, camera->media, entering);
   Mask todo = camera->active;
   while (ANY(todo)) {
-    const Encounter e = next_encounter(scene, todo, surface, camera->media, entering);
+    const Encounter e = next_encounter(scene, todo, surface, keys, camera->media);
     todo &= e.here == 0;
     const uint kind = e.material->surface;
     Vec3 arriving = weight;

@@ -62,7 +62,7 @@ FUNCTION Vec3 diffuse_reflectance(const Scene scene, __global const MaterialData
 // the bound serves its neighbours only; on a mesh the ray must get clear of the facet and of those that share its edge.
 FUNCTION Float leaving_t_min(const SurfacePacket* surface, const Vec3 direction) {
 #if HAS_MESH
-  const Float cosine = magnitude(dot3(direction, surface->geometric_normal));
+  const Float cosine = fabs(dot3(direction, surface->geometric_normal));
   return surface->from == NO_INDEX ? surface->error / larger(cosine, LEAST_COSINE) : surface->error;
 #else
   return surface->error;

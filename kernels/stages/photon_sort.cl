@@ -1,131 +1,74 @@
-// Stage photon_sort: a stable sort of the photon map into its grid, in two steps: first into buckets of neighbouring
+// Stage photon_sort: a stable sort of the photon map into its grid, in two steps: runs into buckets of neighbouring
 // cells, few enough that the processor follows all of them, then each bucket, which fits its caches, into cells.
-// The host adds the counts of the buckets up in between.
-#include "photon_map.h"
+// Runs, buckets and cells: photon_map.h. What goes where is added up by the host (src/render/photon_grid.cpp).
 #include "outcome.h"
+#include "photon_map.h"
 
-// The first run that a block minds: as many as the others, in order.
-FUNCTION uint first_run_of(uint block, uint blocks, uint n_runs) { return (uint)((ulong)n_runs * block / blocks); }
-
-FUNCTION float least(float8 v) {
-  const float4 a = min(v.lo, v.hi);
-  return min(min(a.x, a.y), min(a.z, a.w));
-}
-
-// Reads: the runs' photons. Writes: their cells; counts[block * buckets + bucket], the number of photons of each bucket
-// in each block of runs; bounds[block], the least and the greatest coordinates {x, y, z, -, x, y, z, -}. A bucket is
-// 2^bucket_shift cells.
-BODY count_block(const GridData grid, const uint n_runs, const uint run_length, const uint block, const uint blocks,
-                 const uint buckets, const uint bucket_shift, __global const PhotonRunData* restrict runs,
-                 __global float* restrict photons, __global uint* restrict own, __global float8* restrict bounds) {
-  for (uint k = 0; k < buckets; ++k) own[k] = 0;
-  float8 low_x = INFINITY, low_y = INFINITY, low_z = INFINITY;
-  float8 low_minus_x = INFINITY, low_minus_y = INFINITY, low_minus_z = INFINITY;
-  const uint last = first_run_of(block + 1, blocks, n_runs);
-  for (uint run = first_run_of(block, blocks, n_runs); run < last; ++run) {
-    const uint stored = runs[run].photons[OUTCOME_STORED];
-    __global const float* xs = photons + photon_in_run(run_length, run, PHOTON_X);
-    __global const float* ys = photons + photon_in_run(run_length, run, PHOTON_Y);
-    __global const float* zs = photons + photon_in_run(run_length, run, PHOTON_Z);
-    __global float* cells = photons + photon_in_run(run_length, run, PHOTON_CELL);
-    for (uint i = 0; i < stored; i += 8) {
-      const int8 here = (uint8)(0, 1, 2, 3, 4, 5, 6, 7) + i < stored;
-      const float8 x = vload8(0, xs + i);
-      const float8 y = vload8(0, ys + i);
-      const float8 z = vload8(0, zs + i);
-      low_x = (here & (x < low_x)) ? x : low_x;
-      low_y = (here & (y < low_y)) ? y : low_y;
-      low_z = (here & (z < low_z)) ? z : low_z;
-      low_minus_x = (here & (-x < low_minus_x)) ? -x : low_minus_x;
-      low_minus_y = (here & (-y < low_minus_y)) ? -y : low_minus_y;
-      low_minus_z = (here & (-z < low_minus_z)) ? -z : low_minus_z;
-      const uint8 cell = cells_of(grid, x, y, z);
-      vstore8(as_float8(cell), 0, cells + i);
-      uint bucket[8];
-      vstore8(cell >> bucket_shift, 0, bucket);
-      const uint n = min(stored - i, 8u);
-      for (uint k = 0; k < n; ++k) ++own[bucket[k]];
-    }
-  }
-  *bounds = (float8)(least(low_x), least(low_y), least(low_z), 0.0f, -least(low_minus_x), -least(low_minus_y),
-                     -least(low_minus_z), 0.0f);
-}
-
-__kernel void sort_count(const GridData grid, const uint n_runs, const uint run_length, const uint blocks,
-                         const uint buckets, const uint bucket_shift, __global const PhotonRunData* runs,
-                         __global float* photons, __global uint* counts, __global float8* bounds) {
-  const uint block = get_global_id(0);
-  if (block < blocks)
-    count_block(grid, n_runs, run_length, block, blocks, buckets, bucket_shift, runs, photons, counts + block * buckets,
-                bounds + block);
-}
-
-// Moves each photon into its bucket. places[block * buckets + bucket]: where the next one goes.
-BODY move_block(const uint n_runs, const uint run_length, const uint block, const uint blocks, const uint bucket_shift,
-                __global const PhotonRunData* restrict runs, __global const float* restrict photons,
-                __global uint* restrict own, __global float8* restrict bucketed) {
-  const uint last = first_run_of(block + 1, blocks, n_runs);
-  for (uint run = first_run_of(block, blocks, n_runs); run < last; ++run) {
-    const uint stored = runs[run].photons[OUTCOME_STORED];
-    __global const float* fields = photons + photon_in_run(run_length, run, 0);
-    const uint stride = run_length + RUN_MARGIN;
-    for (uint i = 0; i < stored; ++i) {
-      const float8 photon = (float8)(fields[i], fields[stride + i], fields[2 * stride + i], fields[3 * stride + i],
-                                     fields[4 * stride + i], fields[5 * stride + i], fields[6 * stride + i],
-                                     fields[7 * stride + i]);
-      bucketed[own[as_uint(photon.s7) >> bucket_shift]++] = photon;
-    }
+// places: for each bucket, the row of the run's next photon.
+BODY move_run(const uint stored, const uint run_length, const uint bucket_shift, __global const float* restrict fields,
+              __global uint* restrict places, __global float8* restrict rows) {
+  const uint stride = run_length + RUN_MARGIN;
+  for (uint i = 0; i < stored; ++i) {
+    const float8 photon = (float8)(fields[i], fields[stride + i], fields[2 * stride + i], fields[3 * stride + i],
+                                   fields[4 * stride + i], fields[5 * stride + i], fields[6 * stride + i],
+                                   fields[7 * stride + i]);
+    rows[places[as_uint(photon.s7) >> bucket_shift]++] = photon;
   }
 }
 
-__kernel void sort_into_buckets(const uint n_runs, const uint run_length, const uint blocks, const uint buckets,
-                                const uint bucket_shift, __global const PhotonRunData* runs,
-                                __global const float* photons, __global uint* places, __global float8* bucketed) {
-  const uint block = get_global_id(0);
-  if (block < blocks)
-    move_block(n_runs, run_length, block, blocks, bucket_shift, runs, photons, places + block * buckets, bucketed);
+// Moves the photons of each run into their buckets, as rows. places: [run * buckets + bucket].
+__kernel void sort_into_buckets(const uint n_runs, const uint run_length, const uint buckets, const uint bucket_shift,
+                                __global const PhotonRunData* reports, __global const float* photons,
+                                __global uint* places, __global float8* rows) {
+  const uint run = get_global_id(0);
+  if (run < n_runs)
+    move_run(reports[run].photons[OUTCOME_STORED], run_length, bucket_shift, photons + photon_in_run(run_length, run, 0),
+             places + run * buckets, rows);
 }
 
-// Sorts each bucket into its cells, from rows to columns. first_of_bucket has one more entry than there are buckets.
-// Writes: first_of_cell, where each cell starts, and one more, the number of photons; map. next_of_cell: room for the
-// cells. The map has room for whole groups of eight.
-BODY sort_bucket(const uint bucket, const uint buckets, const uint bucket_shift,
-                 __global const uint* restrict first_of_bucket, __global const float8* restrict bucketed,
-                 __global uint* restrict next_of_cell, __global uint* restrict first_of_cell, const uint stride,
-                 __global float* restrict map) {
-  const uint cells = 1u << bucket_shift;
-  const uint first_cell = bucket << bucket_shift;
-  const uint first = first_of_bucket[bucket];
-  const uint last = first_of_bucket[bucket + 1];
-  for (uint cell = first_cell; cell < first_cell + cells; ++cell) next_of_cell[cell] = 0;
-  for (uint i = first; i < last; ++i) ++next_of_cell[as_uint(bucketed[i].s7)];
-  uint next = first;
-  for (uint cell = first_cell; cell < first_cell + cells; ++cell) {
-    const uint n = next_of_cell[cell];
-    next_of_cell[cell] = first_of_cell[cell] = next;
-    next += n;
+// Sorts a bucket of `count` photons from rows to columns, by way of `columns`, which has room for all of it. `first`: of
+// its cells; next: room for as many numbers as there are cells.
+BODY sort_bucket(const uint first_cell, const uint cells, const uint count, const uint stride,
+                 __global float* restrict bucket, __global float* restrict columns, __global uint* restrict next,
+                 __global uint* restrict first) {
+  for (uint cell = 0; cell < cells; ++cell) next[cell] = 0;
+  for (uint i = 0; i < count; ++i) ++next[as_uint(bucket[PHOTON_ROW * i + PHOTON_CELL]) - first_cell];
+  uint sum = 0;
+  for (uint cell = 0; cell < cells; ++cell) {
+    const uint n = next[cell];
+    next[cell] = first[cell] = sum;
+    sum += n;
   }
-  if (bucket == buckets - 1) first_of_cell[first_cell + cells] = next;
-
-  // Each place's photon, kept where its x will be: then the map is written in order.
-  __global float* order = map + PHOTON_X * stride;
-  for (uint i = first; i < last; ++i) order[next_of_cell[as_uint(bucketed[i].s7)]++] = as_float(i);
-  for (uint i = first; i < last; ++i) {
-    const float8 photon = bucketed[as_uint(order[i])];
-    map[PHOTON_X * stride + i] = photon.s0;
-    map[PHOTON_Y * stride + i] = photon.s1;
-    map[PHOTON_Z * stride + i] = photon.s2;
-    map[PHOTON_DIRECTION * stride + i] = photon.s3;
-    map[(PHOTON_POWER + 0) * stride + i] = photon.s4;
-    map[(PHOTON_POWER + 1) * stride + i] = photon.s5;
-    map[(PHOTON_POWER + 2) * stride + i] = photon.s6;
+  first[cells] = sum;
+  // Which row comes to each place is kept where its x will be; then places are filled in order.
+  for (uint i = 0; i < count; ++i)
+    columns[next[as_uint(bucket[PHOTON_ROW * i + PHOTON_CELL]) - first_cell]++] = as_float(i);
+  for (uint i = 0; i < count; ++i) {
+    const float8 photon = vload8(as_uint(columns[i]), bucket);
+    columns[i] = photon.s0;
+    columns[stride + i] = photon.s1;
+    columns[2 * stride + i] = photon.s2;
+    columns[3 * stride + i] = photon.s3;
+    columns[4 * stride + i] = photon.s4;
+    columns[5 * stride + i] = photon.s5;
+    columns[6 * stride + i] = photon.s6;
   }
+  for (uint i = 0; i < PHOTON_FIELDS * stride; i += 8) vstore8(vload8(0, columns + i), 0, bucket + i);
 }
 
-__kernel void sort_into_cells(const uint buckets, const uint bucket_shift, __global const uint* first_of_bucket,
-                              __global const float8* bucketed, __global uint* next_of_cell,
-                              __global uint* first_of_cell, const uint stride, __global float* map) {
-  const uint bucket = get_global_id(0);
-  if (bucket < buckets)
-    sort_bucket(bucket, buckets, bucket_shift, first_of_bucket, bucketed, next_of_cell, first_of_cell, stride, map);
+// Sorts all buckets. Work-item w takes those listed at [first_task[w], first_task[w + 1]), one after the other, and has
+// scratch from unit first_scratch[w] on.
+__kernel void sort_into_cells(const uint workers, const uint bucket_shift, __global const uint* tasks,
+                              __global const uint* first_task, __global const uint* first_scratch,
+                              __global const uint* counts, __global const BucketData* buckets, __global float* scratch,
+                              __global uint* next_of_cell, __global uint* first_of_cell, __global float* map) {
+  const uint worker = get_global_id(0);
+  if (worker >= workers) return;
+  for (uint task = first_task[worker]; task < first_task[worker + 1]; ++task) {
+    const uint bucket = tasks[task];
+    const uint first_cell = bucket << bucket_shift;
+    sort_bucket(first_cell, 1u << bucket_shift, counts[bucket], buckets[bucket].stride,
+                map + (ulong)buckets[bucket].start * BUCKET_UNIT, scratch + (ulong)first_scratch[worker] * BUCKET_UNIT,
+                next_of_cell + first_cell, first_of_cell + first_cell + bucket);
+  }
 }

@@ -1,5 +1,6 @@
 // Stage photons: a pair of light and caster shoots photons, which are followed to their end.
-// Reads: the scene, the casters, the sequences. Writes: for each run of photons its stored ones and its PhotonRunData.
+// Reads: the scene, the casters, the sequences. Writes: for each run of photons its stored ones, how many of them are in
+// each bucket of the grid, and its PhotonRunData.
 // A work-item minds one run: WIDTH photons at a time, in registers from the light to where they end. The few that go
 // other ways than most wait until they fill a packet of their own, so that lanes rarely idle.
 #include "emission.h"
@@ -33,6 +34,12 @@ FUNCTION void add_power(Tally* tally, const Mask which, const Vec3 power) {
   add_compensated(&tally->sum.x, &tally->rest.x, which ? power.x : 0.0f);
   add_compensated(&tally->sum.y, &tally->rest.y, which ? power.y : 0.0f);
   add_compensated(&tally->sum.z, &tally->rest.z, which ? power.z : 0.0f);
+}
+
+FUNCTION float least_of_lanes(const Float values) {
+  float least = LANE(values, float, 0);
+  for (uint lane = 1; lane < WIDTH; ++lane) least = min(least, LANE(values, float, lane));
+  return least;
 }
 
 FUNCTION void total_of_lanes(const Float sum, const Float rest, __global float* total, __global float* total_rest) {
@@ -95,9 +102,10 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   Vec3 next = direction;
 
   // [photon]
+  const Uint keys = encounter_keys(surface, stack, entering);
   Mask todo = alive & (surface->t < INFINITY);
   while (ANY(todo)) {
-    const Encounter e = next_encounter(scene, todo, surface, stack, entering);
+    const Encounter e = next_encounter(scene, todo, surface, keys, stack);
     todo &= e.here == 0;
 #if HAS_ABSORPTION
     // What the medium takes is counted by itself, not as a difference.
@@ -125,8 +133,8 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
       photons->stack =
           e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : photons->stack;
       const Float rest = (reflect ? u : u - split.R) / (reflect ? split.R : 1.0f - split.R);
-      const Uint rest_bits =
-          TO_UINT(smaller(rest, 0.99999994f) * 16777216.0f) << 8 | (hash32(photons->path) & 0xffu);
+      // The low bits, which no choice has used, serve for the hash.
+      const Uint rest_bits = AS_UINT(TO_INT(smaller(rest, 0.99999994f) * 16777216.0f)) << 8 | (photons->path & 0xffu);
       photons->path = (e.here & first_two) ? rest_bits : photons->path;
       outcome = e.here ? OUTCOME_ALIVE : outcome;
 #endif
@@ -198,45 +206,36 @@ FUNCTION Photons take_waiting(Waiting* waiting) {
   return photons;
 }
 
-// Adds the lanes of `which` to the run's photons, of which there are `stored`. `fields`: the run's piece of the map.
-FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Mask which, const uint run_length,
-                            const uint stored, __global float* fields) {
-  const Float packed = AS_FLOAT(packed_direction(arrived));
-  __global float* x = fields + photon_in_run(run_length, 0, PHOTON_X) + stored;
-  __global float* y = fields + photon_in_run(run_length, 0, PHOTON_Y) + stored;
-  __global float* z = fields + photon_in_run(run_length, 0, PHOTON_Z) + stored;
-  __global float* direction = fields + photon_in_run(run_length, 0, PHOTON_DIRECTION) + stored;
-  __global float* red = fields + photon_in_run(run_length, 0, PHOTON_POWER + 0) + stored;
-  __global float* green = fields + photon_in_run(run_length, 0, PHOTON_POWER + 1) + stored;
-  __global float* blue = fields + photon_in_run(run_length, 0, PHOTON_POWER + 2) + stored;
+// Adds the lanes of `which` to the run's photons, of which there are `stored`. `fields`: the run's piece of the buffer.
+FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Mask which, const GridData grid,
+                            const uint run_length, const uint stored, __global float* fields) {
+  Float values[PHOTON_ROW];
+  values[PHOTON_X] = photons->origin.x;
+  values[PHOTON_Y] = photons->origin.y;
+  values[PHOTON_Z] = photons->origin.z;
+  values[PHOTON_DIRECTION] = AS_FLOAT(packed_direction(arrived));
+  values[PHOTON_POWER + 0] = photons->power.x;
+  values[PHOTON_POWER + 1] = photons->power.y;
+  values[PHOTON_POWER + 2] = photons->power.z;
+  values[PHOTON_CELL] = AS_FLOAT(cells_of(grid, photons->origin));
+  __global float* to = fields + stored;
+  const uint stride = run_length + RUN_MARGIN;
 #if PACKS_LANES
-  pack_lanes(which, photons->origin.x, x);
-  pack_lanes(which, photons->origin.y, y);
-  pack_lanes(which, photons->origin.z, z);
-  pack_lanes(which, packed, direction);
-  pack_lanes(which, photons->power.x, red);
-  pack_lanes(which, photons->power.y, green);
-  pack_lanes(which, photons->power.z, blue);
+  for (uint field = 0; field < PHOTON_ROW; ++field) pack_lanes(which, values[field], to + field * stride);
 #else
-  uint k = 0;
   FOR_LANES(lane, which) {
-    x[k] = LANE(photons->origin.x, float, lane);
-    y[k] = LANE(photons->origin.y, float, lane);
-    z[k] = LANE(photons->origin.z, float, lane);
-    direction[k] = LANE(packed, float, lane);
-    red[k] = LANE(photons->power.x, float, lane);
-    green[k] = LANE(photons->power.y, float, lane);
-    blue[k] = LANE(photons->power.z, float, lane);
-    ++k;
+    for (uint field = 0; field < PHOTON_ROW; ++field) to[field * stride] = LANE(values[field], float, lane);
+    ++to;
   }
 #endif
 }
 
-// Photons [first, last) of the sequences, a run. `fields`: its piece of the map.
+// Photons [first, last) of the sequences, a run. `fields`: its piece of the buffer; `counts`: its photons by bucket.
 BODY follow_run(const Scene scene, __global const LightData* light, __global const CasterData* casters,
                 const uint n_casters, const uint caster, __global const SequenceData* sequences, const float share,
                 const float upstream, const uint first, const uint last, const uint run_length, const uint max_depth,
-                __global float* restrict fields, __global PhotonRunData* restrict report) {
+                const GridData grid, const uint buckets, __global float* restrict fields,
+                __global uint* restrict counts, __global PhotonRunData* restrict report) {
   Tally power[OUTCOMES];
   Uint ended[OUTCOMES];
   for (uint k = 0; k < OUTCOMES; ++k) {
@@ -245,6 +244,8 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   }
   Uint surfaces = 0;
   uint stored = 0;
+  Vec3 low = make_vec3(INFINITY, INFINITY, INFINITY);
+  Vec3 high = negate3(low);
   // Those outside of all media and those inside wait apart, since they meet different surfaces.
   Waiting waiting[2];
   waiting[0].count = waiting[1].count = 0;
@@ -280,8 +281,10 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
         ended[k] += here ? (Uint)1 : (Uint)0;
         surfaces += here ? photons.depth : (Uint)0;
         if (k == OUTCOME_STORED) {
-          store_photons(&photons, arrived, here, run_length, stored, fields);
+          store_photons(&photons, arrived, here, grid, run_length, stored, fields);
           stored += lanes_set(here);
+          low = smaller3(select3(here, photons.origin, low), low);
+          high = larger3(select3(here, photons.origin, high), high);
         }
       }
       // The fewer step aside, and all of them when few are left.
@@ -312,19 +315,30 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   uint surfaces_met = 0;
   for (uint lane = 0; lane < WIDTH; ++lane) surfaces_met += LANE(surfaces, uint, lane);
   report->surfaces = surfaces_met;
+  report->low[0] = least_of_lanes(low.x);
+  report->low[1] = least_of_lanes(low.y);
+  report->low[2] = least_of_lanes(low.z);
+  report->high[0] = -least_of_lanes(-high.x);
+  report->high[1] = -least_of_lanes(-high.y);
+  report->high[2] = -least_of_lanes(-high.z);
+
+  for (uint bucket = 0; bucket < buckets; ++bucket) counts[bucket] = 0;
+  __global const float* cells = fields + PHOTON_CELL * (run_length + RUN_MARGIN);
+  for (uint i = 0; i < stored; ++i) ++counts[as_uint(cells[i]) >> grid.bucket_shift];
 }
 
-// The first `count` photons of the sequences, `run_length` to a run; runs are numbered from `first_run` on. `share`: of
-// the pair's power for each photon; `upstream`: see emission.h.
+// The first `count` photons of the sequences, `run_length` to a run. `share`: of the pair's power for each photon;
+// `upstream`: see emission.h.
 __kernel void photons(SCENE_PARAMETERS, __global const CasterData* casters, const uint n_casters,
                       __global const SequenceData* sequences, const uint light_index, const uint caster,
                       const float share, const float upstream, const uint count, const uint run_length,
-                      const uint first_run, const uint max_depth, __global float* map, __global PhotonRunData* runs) {
+                      const uint max_depth, const GridData grid, const uint buckets, __global float* photons,
+                      __global uint* counts, __global PhotonRunData* reports) {
   const uint run = get_global_id(0);
   const uint first = run * run_length;
   if (first >= count) return;
   const Scene scene = SCENE;
   follow_run(scene, &scene.lights[light_index], casters, n_casters, caster, sequences, share, upstream, first,
-             min(first + run_length, count), run_length, max_depth,
-             map + photon_in_run(run_length, first_run + run, 0), &runs[first_run + run]);
+             min(first + run_length, count), run_length, max_depth, grid, buckets,
+             photons + photon_in_run(run_length, run, 0), counts + run * buckets, &reports[run]);
 }

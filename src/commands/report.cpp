@@ -63,6 +63,7 @@ std::string render_report(const Scene& scene, const Device& device, const Render
                     {"rays_per_work_item", device.width()}};
   json["features"] = result.features.names();
   json["seconds"] = result.seconds;
+  json["cpu_seconds"] = result.cpu_seconds;
   json["rays"] = {{"camera", result.rays.camera},
                   {"secondary", result.rays.secondary},
                   {"shadow", result.rays.shadow},

@@ -14,6 +14,7 @@ using Float = float;
 using Int = int;
 using Mask = bool;
 using Uint = uint32_t;
+using std::fabs;
 using std::fma;
 using std::rint;
 using std::sqrt;
@@ -35,6 +36,8 @@ static_assert(sizeof(LightFace) == 32);
 static_assert(sizeof(TextureData) == 48);
 static_assert(sizeof(CameraData) == 72);
 static_assert(sizeof(CameraSample) == 24);
-static_assert(sizeof(PhotonRunData) == 176);
+static_assert(sizeof(PhotonRunData) == 196);
+static_assert(sizeof(GridData) == 20);
+static_assert(sizeof(BucketData) == 8);
 
 }  // namespace vitrum::kernel

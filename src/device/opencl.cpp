@@ -189,12 +189,11 @@ void Device::read_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, v
   }
 }
 
-void Device::read_strided_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, size_t stride, size_t count,
-                                void* data) {
+void Device::copy_bytes(const cl::Buffer& from, size_t offset, const cl::Buffer& to, size_t to_offset, size_t bytes) {
   try {
-    queue_.enqueueReadBufferRect(buffer, CL_TRUE, {offset, 0, 0}, {0, 0, 0}, {bytes, count, 1}, stride, 0, bytes, 0, data);
+    queue_.enqueueCopyBuffer(from, to, offset, to_offset, bytes);
   } catch (const cl::Error& error) {
-    fail(error, "copying from the device", "another device may do better (--device)");
+    fail(error, "copying on the device", "another device may do better (--device)");
   }
 }
 

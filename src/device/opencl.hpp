@@ -95,13 +95,10 @@ class Device {
     if (count > 0) read_bytes(buffer.cl(), first * sizeof(T), count * sizeof(T), values.data());
     return values;
   }
-  /// `count` times `length` values, a piece every `step` values from value `first` on.
+  /// Copies `count` values from value `first` of `from` on to value `to_first` of `to` on; they do not overlap.
   template <typename T>
-  std::vector<T> read_strided(const Buffer<T>& buffer, size_t first, size_t length, size_t step, size_t count) {
-    std::vector<T> values(length * count);
-    if (!values.empty())
-      read_strided_bytes(buffer.cl(), first * sizeof(T), length * sizeof(T), step * sizeof(T), count, values.data());
-    return values;
+  void copy(const Buffer<T>& from, size_t first, const Buffer<T>& to, size_t to_first, size_t count) {
+    if (count > 0) copy_bytes(from.cl(), first * sizeof(T), to.cl(), to_first * sizeof(T), count * sizeof(T));
   }
   template <typename T>
   void fill_zero(const Buffer<T>& buffer) {
@@ -122,8 +119,7 @@ class Device {
   cl::Buffer allocate_bytes(size_t bytes, const char* purpose);
   void write_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, const void* data);
   void read_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, void* data);
-  void read_strided_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, size_t stride, size_t count,
-                          void* data);
+  void copy_bytes(const cl::Buffer& from, size_t offset, const cl::Buffer& to, size_t to_offset, size_t bytes);
   void fill_zero_bytes(const cl::Buffer& buffer, size_t bytes);
   void collect_timings();
   void launch_groups(const std::string& stage, const cl::Kernel& kernel, size_t count, size_t group_size);

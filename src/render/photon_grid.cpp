@@ -3,43 +3,45 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
-#include "render/photon_pass.hpp"
 
 namespace vitrum {
 namespace {
 
-constexpr uint32_t sort_blocks = 32;           // ranges of runs that are counted side by side
-constexpr uint32_t photons_per_bucket = 4096;  // their rows fit a CPU's second cache
-constexpr size_t sample_size = 1024;
-constexpr size_t judged_places = 128;          // of the sample, around which the density is looked at
+constexpr uint32_t photons_per_bucket = 8192;  // their rows fit a CPU's second cache, twice
+constexpr uint32_t most_log2_buckets = 10;     // each takes a line of a processor's cache while photons are dealt out
+constexpr size_t judged_places = 128;          // of a sample, around which the density is looked at,
+constexpr size_t judging_places = 1024;        // by so many of it
 
-/// Places of photons from all runs, the first few of each: those of a low-discrepancy sequence spread well.
-std::vector<glm::vec3> sample_of(Device& device, const PhotonMap& map) {
-  std::vector<glm::vec3> sample;
-  const size_t runs = map.stored_by_run.size();
-  if (runs == 0) return sample;
-  const size_t step = std::max<size_t>(1, runs / sample_size);
-  const size_t from_each = std::min<size_t>(map.run_length, (sample_size * step + runs - 1) / runs);
-  const auto coordinates = [&](uint32_t field) {
-    return device.read_strided(map.photons, kernel::photon_in_run(map.run_length, 0, field), from_each,
-                               step * kernel::photon_in_run(map.run_length, 1, 0), (runs + step - 1) / step);
-  };
-  const std::vector<float> x = coordinates(PHOTON_X), y = coordinates(PHOTON_Y), z = coordinates(PHOTON_Z);
-  for (size_t i = 0; i < x.size(); ++i)
-    if (i % from_each < map.stored_by_run[i / from_each * step]) sample.push_back({x[i], y[i], z[i]});
-  return sample;
-}
+uint32_t log2_cells(const kernel::GridData& grid) { return grid.log2_x + grid.log2_y + grid.log2_z; }
+
+/// Stride of a bucket's sorted fields.
+uint32_t sorted_stride(uint32_t count) { return (count + 7) / 8 * 8; }
+
+/// Rows of the map's buffer; each is half a unit.
+constexpr uint32_t rows_per_unit = BUCKET_UNIT / PHOTON_ROW;
+constexpr uint32_t margin_rows = 16;           // a sorted bucket's strides, and reading beyond its end
+uint32_t whole_units(uint32_t rows) { return (rows + rows_per_unit - 1) / rows_per_unit * rows_per_unit; }
 
 }  // namespace
 
-PhotonGrid::PhotonGrid(const KernelContext& context) : context_(context) {
-  bounds_ = context_.device.allocate<cl_float8>(sort_blocks, "photon map");
+uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p) {
+  const auto coordinate = [&grid](float x, uint32_t log2) {
+    const float cell = std::clamp(std::floor(x * grid.inverse_cell), -1e9f, 1e9f);
+    return static_cast<uint32_t>(static_cast<int32_t>(cell)) & ((1u << log2) - 1u);
+  };
+  return ((coordinate(p.z, grid.log2_z) << grid.log2_y) | coordinate(p.y, grid.log2_y)) << grid.log2_x |
+         coordinate(p.x, grid.log2_x);
 }
 
-float automatic_radius(std::span<const glm::vec3> sample, uint64_t count, int wanted) {
-  if (sample.size() < 16) return 0.01f;
+float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wanted) {
+  if (places.size() < 16) return 0.01f;
+  std::vector<glm::vec3> sample;
+  for (size_t i = 0; i < places.size(); i += (places.size() + judging_places - 1) / judging_places)
+    sample.push_back(places[i]);
   constexpr size_t k = 8;
   std::vector<float> distance2(sample.size()), radius2;
   for (size_t place = 0; place < sample.size(); place += (sample.size() + judged_places - 1) / judged_places) {
@@ -84,67 +86,144 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
     uint32_t& largest = *std::max_element(size, size + 3);
     --largest;
   }
-  return {1.0f / cell, size[0], size[1], size[2]};
+  return {1.0f / cell, size[0], size[1], size[2], 0};
 }
 
-void PhotonGrid::sort(PhotonMap& map) {
-  Device& device = context_.device;
+void PhotonGrid::reserve_rows(uint64_t rows) {
+  const size_t floats = (rows + margin_rows) * PHOTON_ROW;
+  if (map_.photons.size() >= floats) return;
+  const Buffer<float> larger = context_.device.allocate<float>(floats, "photon map");
+  if (used_rows_ > 0) context_.device.copy(map_.photons, 0, larger, 0, size_t{used_rows_} * PHOTON_ROW);
+  map_.photons = larger;
+}
+
+PhotonGrid::Room PhotonGrid::new_room(uint32_t rows) {
+  const Room room{used_rows_, whole_units(rows)};
+  if (map_.photons.size() < size_t{used_rows_ + room.size + margin_rows} * PHOTON_ROW)
+    reserve_rows(uint64_t{used_rows_} + room.size + used_rows_ / 4);
+  used_rows_ += room.size;
+  return room;
+}
+
+void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected) {
   const PhotonSettings& settings = context_.scene.photons;
-  const uint32_t n_runs = static_cast<uint32_t>(map.stored_by_run.size());
-
-  const std::vector<glm::vec3> sample = sample_of(device, map);
-  map.radius = settings.estimate == PhotonEstimate::automatic ? automatic_radius(sample, map.count, settings.nearest)
-                                                              : static_cast<float>(settings.radius);
-  map.grid = choose_grid(sample, map.count, map.radius);
-
-  const uint32_t log2_cells = map.grid.log2_x + map.grid.log2_y + map.grid.log2_z;
-  const uint32_t cells = 1u << log2_cells;
+  map_.radius = settings.estimate == PhotonEstimate::automatic ? automatic_radius(sample, expected, settings.nearest)
+                                                               : static_cast<float>(settings.radius);
+  map_.grid = choose_grid(sample, expected, map_.radius);
+  const uint32_t cells = log2_cells(map_.grid);
   const uint32_t log2_buckets =
-      std::min(log2_cells, static_cast<uint32_t>(std::bit_width(map.count / photons_per_bucket)));
-  const uint32_t buckets = 1u << log2_buckets;
-  const uint32_t shift = log2_cells - log2_buckets;
-  if (next_of_cell_.size() < cells) next_of_cell_ = device.allocate<uint32_t>(cells, "photon map");
-  if (map.first_of_cell.size() < cells + 1) map.first_of_cell = device.allocate<uint32_t>(cells + 1, "photon map");
-  if (counts_.size() < sort_blocks * buckets)
-    counts_ = device.allocate<uint32_t>(sort_blocks * buckets, "photon map");
-  if (first_of_bucket_.size() < buckets + 1)
-    first_of_bucket_ = device.allocate<uint32_t>(buckets + 1, "photon map");
-  if (bucketed_.size() < map.count) bucketed_ = device.allocate<cl_float8>(map.count, "photon map");
+      std::min({cells, most_log2_buckets, static_cast<uint32_t>(std::bit_width(expected / photons_per_bucket))});
+  map_.grid.bucket_shift = cells - log2_buckets;
+  map_.low.fill(std::numeric_limits<float>::infinity());
+  map_.high.fill(-std::numeric_limits<float>::infinity());
+  map_.bucket_counts.assign(size_t{1} << log2_buckets, 0);
 
-  auto kernel = [&](const char* name) { return context_.kernels.get(name); };
-  cl::Kernel count = kernel("sort_count"), into_buckets = kernel("sort_into_buckets"),
-             into_cells = kernel("sort_into_cells");
-  set_arguments(count, 0, map.grid, n_runs, map.run_length, sort_blocks, buckets, shift, map.runs, map.photons, counts_,
-                bounds_);
-  device.launch_singly("sort", count, sort_blocks);
-
-  // Bucket by bucket, and in it block by block, so that photons keep their order.
-  std::vector<uint32_t> places = device.read(counts_, 0, sort_blocks * buckets), first_of_bucket;
-  uint32_t place = 0;
-  for (uint32_t bucket = 0; bucket < buckets; ++bucket) {
-    first_of_bucket.push_back(place);
-    for (uint32_t block = 0; block < sort_blocks; ++block)
-      place += std::exchange(places[block * buckets + bucket], place);
+  // Room by the sample's share in each bucket, with some to spare; what is not enough grows later.
+  std::vector<uint32_t> in_bucket(map_.bucket_counts.size(), 0);
+  for (const glm::vec3& p : sample) ++in_bucket[cell_of(map_.grid, p) >> map_.grid.bucket_shift];
+  const double each = static_cast<double>(expected) / static_cast<double>(std::max<size_t>(sample.size(), 1));
+  std::vector<uint32_t> rows;
+  for (uint32_t n : in_bucket) {
+    const double wanted = each * (n + 2.0 * std::sqrt(n) + 1.0);
+    rows.push_back(whole_units(static_cast<uint32_t>(std::min(wanted, static_cast<double>(expected))) + margin_rows));
   }
-  first_of_bucket.push_back(place);
-  device.write(counts_, places);
-  device.write(first_of_bucket_, first_of_bucket);
-  set_arguments(into_buckets, 0, n_runs, map.run_length, sort_blocks, buckets, shift, map.runs, map.photons,
-                counts_, bucketed_);
-  device.launch_singly("sort", into_buckets, sort_blocks);
+  used_rows_ = 0;
+  const uint64_t all = std::accumulate(rows.begin(), rows.end(), uint64_t{0});
+  reserve_rows(all + all / 4);
+  room_.clear();
+  for (uint32_t n : rows) room_.push_back(new_room(n));
+}
 
-  map.stride = padded(map.count + 8);
-  set_arguments(into_cells, 0, buckets, shift, first_of_bucket_, bucketed_, next_of_cell_, map.first_of_cell, map.stride,
-                map.photons);
-  device.launch_singly("sort", into_cells, buckets);
-
-  map.low.fill(std::numeric_limits<float>::infinity());
-  map.high.fill(-std::numeric_limits<float>::infinity());
-  for (const cl_float8& b : device.read(bounds_, 0, sort_blocks))
-    for (size_t axis = 0; axis < 3; ++axis) {
-      map.low[axis] = std::min(map.low[axis], b.s[axis]);
-      map.high[axis] = std::max(map.high[axis], b.s[axis + 4]);
+void PhotonGrid::add(const PhotonRuns& runs) {
+  Device& device = context_.device;
+  const uint32_t n_runs = static_cast<uint32_t>(runs.reports.size());
+  // Bucket by bucket, and in it run by run, so that photons keep their order.
+  std::vector<uint32_t> places = device.read(runs.counts, 0, size_t{n_runs} * buckets()), rows(buckets()), added(buckets());
+  for (uint32_t run = 0; run < n_runs; ++run)
+    for (uint32_t bucket = 0; bucket < buckets(); ++bucket) added[bucket] += places[run * buckets() + bucket];
+  for (uint32_t bucket = 0; bucket < buckets(); ++bucket) {
+    const uint32_t before = std::exchange(map_.bucket_counts[bucket], map_.bucket_counts[bucket] + added[bucket]);
+    const uint32_t needed = map_.bucket_counts[bucket] + margin_rows;
+    if (Room& room = room_[bucket]; room.size < needed) {
+      const Room larger = new_room(2 * needed);
+      device.copy(map_.photons, size_t{room.start} * PHOTON_ROW, map_.photons, size_t{larger.start} * PHOTON_ROW,
+                  size_t{before} * PHOTON_ROW);
+      room = larger;
     }
+    rows[bucket] = room_[bucket].start + before;
+  }
+  for (uint32_t run = 0; run < n_runs; ++run)
+    for (uint32_t bucket = 0; bucket < buckets(); ++bucket) {
+      uint32_t& place = places[run * buckets() + bucket];
+      rows[bucket] += std::exchange(place, rows[bucket]);
+    }
+  if (places_.size() < places.size()) places_ = device.allocate<uint32_t>(places.size(), "photon map");
+  device.write(places_, places);
+  cl::Kernel kernel = context_.kernels.get("sort_into_buckets");
+  set_arguments(kernel, 0, n_runs, runs.length, buckets(), map_.grid.bucket_shift, runs.on_device, runs.photons, places_,
+                map_.photons);
+  device.launch_singly("sort", kernel, n_runs);
+
+  for (const kernel::PhotonRunData& run : runs.reports)
+    for (size_t axis = 0; axis < 3; ++axis) {
+      map_.low[axis] = std::min(map_.low[axis], run.low[axis]);
+      map_.high[axis] = std::max(map_.high[axis], run.high[axis]);
+    }
+}
+
+void PhotonGrid::finish() {
+  Device& device = context_.device;
+  const std::vector<uint32_t>& counts = map_.bucket_counts;
+  map_.count = std::accumulate(counts.begin(), counts.end(), 0u);
+  std::vector<kernel::BucketData> buckets;
+  std::vector<uint32_t> by_size;
+  for (uint32_t bucket = 0; bucket < counts.size(); ++bucket) {
+    buckets.push_back({room_[bucket].start / rows_per_unit, sorted_stride(counts[bucket])});
+    by_size.push_back(bucket);
+  }
+
+  // The largest buckets first, each to the worker that has least to do. All scratch together is about a quarter of the
+  // map, at least that of the largest bucket.
+  std::stable_sort(by_size.begin(), by_size.end(), [&](uint32_t a, uint32_t b) { return counts[a] > counts[b]; });
+  const uint32_t largest = std::max(counts[by_size.front()], 1u);
+  const uint32_t workers = std::clamp(map_.count / 4 / largest, 1u, 2 * device.info().compute_units);
+  std::vector<std::vector<uint32_t>> buckets_of(workers);
+  std::vector<uint64_t> load(workers, 0);
+  for (uint32_t bucket : by_size) {
+    const size_t worker = static_cast<size_t>(std::min_element(load.begin(), load.end()) - load.begin());
+    buckets_of[worker].push_back(bucket);
+    load[worker] += counts[bucket] + 64;
+  }
+  std::vector<uint32_t> tasks, first_task, first_scratch;
+  uint32_t scratch = 0;
+  for (const std::vector<uint32_t>& own : buckets_of) {
+    first_task.push_back(static_cast<uint32_t>(tasks.size()));
+    first_scratch.push_back(scratch);
+    tasks.insert(tasks.end(), own.begin(), own.end());
+    if (!own.empty()) scratch += (PHOTON_FIELDS * sorted_stride(counts[own.front()]) + BUCKET_UNIT - 1) / BUCKET_UNIT + 4;
+  }
+  first_task.push_back(static_cast<uint32_t>(tasks.size()));
+
+  const auto fill = [&device]<typename T>(Buffer<T>& buffer, const std::vector<T>& values) {
+    if (buffer.size() < values.size()) buffer = device.allocate<T>(values.size(), "photon map");
+    device.write(buffer, values);
+  };
+  const auto reserve = [&device]<typename T>(Buffer<T>& buffer, size_t size) {
+    if (buffer.size() < size) buffer = device.allocate<T>(size, "photon map");
+  };
+  fill(map_.buckets, buckets);
+  fill(counts_, counts);
+  fill(tasks_, tasks);
+  fill(first_task_, first_task);
+  fill(first_scratch_, first_scratch);
+  const size_t cells = size_t{1} << log2_cells(map_.grid);
+  reserve(scratch_, size_t{scratch} * BUCKET_UNIT);
+  reserve(next_of_cell_, cells);
+  reserve(map_.first_of_cell, cells + counts.size());
+  cl::Kernel kernel = context_.kernels.get("sort_into_cells");
+  set_arguments(kernel, 0, workers, map_.grid.bucket_shift, tasks_, first_task_, first_scratch_, counts_, map_.buckets,
+                scratch_, next_of_cell_, map_.first_of_cell, map_.photons);
+  device.launch_singly("sort", kernel, workers);
 }
 
 }  // namespace vitrum

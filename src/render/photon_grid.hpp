@@ -3,31 +3,54 @@
 
 #include <span>
 
-#include "render/kernel_context.hpp"
+#include "render/photon_pass.hpp"
 
 namespace vitrum {
 
-struct PhotonMap;
-
-/// The radius within which about `wanted` of `count` photons lie around the median photon, judged from `sample`, some
-/// of the photons' places [m]. The density is that on a surface.
-float automatic_radius(std::span<const glm::vec3> sample, uint64_t count, int wanted);
+/// The radius within which about `wanted` of `count` photons lie around the median photon, judged from `places`, those of
+/// some photons [m]. The density is that on a surface.
+float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wanted);
 
 /// A grid of cells a little larger than `radius` [m], as fine as the photons in `sample` need and no finer than their
 /// number `count` makes worthwhile.
 kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, float radius);
 
-/// Sorts photon maps; keeps its buffers.
+/// The cell of a place [m], as kernels/photon_map.h numbers them.
+uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p);
+
+/// Sorts the photons of a pass into a grid, launch by launch; keeps its buffers.
 class PhotonGrid {
  public:
-  explicit PhotonGrid(const KernelContext& context);
-  /// Sorts the photons of the runs into the grid, and fills all that belongs to it.
-  void sort(PhotonMap& map);
+  explicit PhotonGrid(const KernelContext& context) : context_(context) {}
+
+  /// Chooses radius and grid from `sample`, places of some photons [m], for a pass that stores about `expected`.
+  void start(std::span<const glm::vec3> sample, uint64_t expected);
+  const kernel::GridData& grid() const { return map_.grid; }
+  /// Buckets of cells, by which the photons of a launch are to be counted.
+  uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }
+
+  /// Takes in the photons of a launch.
+  void add(const PhotonRuns& runs);
+  /// Sorts what was taken in.
+  void finish();
+  /// Valid from finish until the next start.
+  const PhotonMap& map() const { return map_; }
 
  private:
+  /// Where the rows of a bucket are, in rows of the map's buffer.
+  struct Room {
+    uint32_t start = 0, size = 0;
+  };
+  /// Makes the map's buffer at least so large; what is used of it stays.
+  void reserve_rows(uint64_t rows);
+  Room new_room(uint32_t rows);
+
   KernelContext context_;
-  Buffer<uint32_t> counts_, first_of_bucket_, next_of_cell_;
-  Buffer<cl_float8> bounds_, bucketed_;
+  PhotonMap map_;
+  std::vector<Room> room_;      ///< by bucket
+  uint32_t used_rows_ = 0;
+  Buffer<uint32_t> places_, next_of_cell_, tasks_, first_task_, first_scratch_, counts_;
+  Buffer<float> scratch_;
 };
 
 }  // namespace vitrum

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "render/photon_grid.hpp"
 #include "render/photon_tree.hpp"
@@ -14,7 +14,7 @@
 namespace vitrum {
 namespace {
 
-constexpr double seconds_per_launch = 0.1;    // so that progress can be told
+constexpr uint32_t photons_per_launch = 1u << 16;  // what they leave fits a CPU's caches, until it is sorted
 
 Spectrum to_spectrum(const float* values) { return {values[0], values[1], values[2]}; }
 
@@ -68,16 +68,16 @@ struct PhotonPass::State {
   KernelContext context;
   uint64_t capacity;
   std::vector<Pair> pairs;
+  double flux = 0.0;            // of all pairs
   Buffer<kernel::CasterData> casters_of_directional;  // none of them unbounded
   Buffer<kernel::SequenceData> sequences;
   cl::Kernel kernel;
-  uint32_t runs_per_launch = 64;
-  PhotonMap map;
+  PhotonRuns runs;
   PhotonBalance balance;
-  std::unique_ptr<PhotonGrid> grid;  // unless the k nearest are gathered
+  PhotonGrid grid;
+  PhotonMap tree;               // instead of the grid where the k nearest are gathered
 
-  State(const KernelContext& c, uint64_t largest) : context(c), capacity(largest) {
-    if (!context.features.nearest_photons) grid = std::make_unique<PhotonGrid>(context);
+  State(const KernelContext& c, uint64_t largest) : context(c), capacity(largest), grid(c) {
     Device& device = context.device;
     const SceneData& data = context.data;
     std::vector<kernel::CasterData> bounded = data.casters;
@@ -87,42 +87,87 @@ struct PhotonPass::State {
     for (uint32_t l = 0; l < data.lights.size(); ++l)
       for (uint32_t k = 0; k < data.casters.size(); ++k) {
         const bool directional = data.lights[l].kind == LIGHT_DIRECTIONAL;
-        const double flux = aimed_flux(data, data.lights[l], directional ? bounded[k] : data.casters[k]);
+        const double pair_flux = aimed_flux(data, data.lights[l], directional ? bounded[k] : data.casters[k]);
         const double upstream =
             2.0 * data.radius + glm::distance(data.centre, to_spectrum(bounded[k].centre)) + bounded[k].radius;
-        if (flux > 0.0) pairs.push_back({l, k, static_cast<float>(upstream), flux});
+        if (!(pair_flux > 0.0)) continue;
+        pairs.push_back({l, k, static_cast<float>(upstream), pair_flux});
+        flux += pair_flux;
       }
     sequences = device.allocate<kernel::SequenceData>(PHOTON_DIMENSIONS, "lights");
     kernel = context.kernels.get("photons");
     // A GPU wants many work-items.
-    map.run_length = device.info().is_cpu ? 1024 : 64;
+    runs.length = device.info().is_cpu ? 1024 : 64;
+    const uint32_t most_runs = photons_per_launch / runs.length;
+    runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0), "photons in flight");
+    runs.on_device = device.allocate<kernel::PhotonRunData>(most_runs, "photons in flight");
   }
 
-  /// Makes room for all that a pass of `runs` runs stores, unsorted and then sorted in the same place.
-  void make_room(uint64_t runs) {
-    Device& device = context.device;
-    const uint64_t room = std::max<uint64_t>(kernel::photon_in_run(map.run_length, static_cast<uint32_t>(runs), 0),
-                                             uint64_t{PHOTON_FIELDS} * padded(runs * map.run_length + 8));
-    if (map.photons.size() < room) map.photons = device.allocate<float>(room, "photon map");
-    if (map.runs.size() < runs) map.runs = device.allocate<kernel::PhotonRunData>(runs, "photon map");
+  /// A pair's share of `count` photons.
+  uint64_t share(const Pair& pair, uint64_t count) const {
+    return static_cast<uint64_t>(std::llround(pair.flux / flux * static_cast<double>(count)));
   }
 
-  /// Shoots photons [first, first + count) of a pair and books what became of them. Their runs follow those before.
-  void shoot(const Pair& pair, uint32_t number, uint32_t replicate, uint64_t first, uint32_t count, double share) {
+  /// Shoots photons [first, first + count) of pair `number`, each with the fraction `power` of its power, and leaves
+  /// them in `runs`, in cells of `cells`.
+  void shoot(uint32_t number, uint32_t replicate, uint64_t first, uint32_t count, double power,
+             const kernel::GridData& cells, uint32_t buckets) {
     Device& device = context.device;
+    const Pair& pair = pairs[number];
     const kernel::LightData& light = context.data.lights[pair.light];
     const auto dimensions = photon_sequences(context.scene.photons.sampling, context.scene.render.seed, replicate,
                                              number, first, light.kind > LIGHT_DIRECTIONAL);
     device.write(sequences, std::vector<kernel::SequenceData>(dimensions.begin(), dimensions.end()));
-    const uint32_t runs = (count + map.run_length - 1) / map.run_length;
-    const uint32_t first_run = static_cast<uint32_t>(map.stored_by_run.size());
+    const uint32_t n_runs = (count + runs.length - 1) / runs.length;
+    const size_t n_counts = size_t{photons_per_launch / runs.length} * buckets;
+    if (runs.counts.size() < n_counts) runs.counts = device.allocate<uint32_t>(n_counts, "photons in flight");
     const unsigned next = context.device_scene.set_arguments(kernel);
     set_arguments(kernel, next, light.kind == LIGHT_DIRECTIONAL ? casters_of_directional : context.device_scene.casters,
                   static_cast<uint32_t>(context.data.casters.size()), sequences, pair.light, pair.caster,
-                  static_cast<float>(share), pair.upstream, count, map.run_length, first_run,
-                  static_cast<uint32_t>(context.scene.photons.max_depth), map.photons, map.runs);
-    device.launch_singly("photons", kernel, runs);
-    for (const kernel::PhotonRunData& run : device.read(map.runs, first_run, runs)) book(run);
+                  static_cast<float>(power), pair.upstream, count, runs.length,
+                  static_cast<uint32_t>(context.scene.photons.max_depth), cells, buckets, runs.photons, runs.counts,
+                  runs.on_device);
+    device.launch_singly("photons", kernel, n_runs);
+    runs.reports = device.read(runs.on_device, 0, n_runs);
+  }
+
+  /// Chooses the grid for a pass of `count` photons by a few of each pair, which are not counted.
+  void start_grid(uint32_t replicate, uint64_t count) {
+    const uint64_t pilot = std::clamp<uint64_t>(count / 64, 1024, 8192);
+    std::vector<std::vector<glm::vec3>> places;
+    std::vector<double> stored;                 // of each pair in the pass
+    for (uint32_t p = 0; p < pairs.size(); ++p) {
+      const uint64_t n = std::max<uint64_t>(1, share(pairs[p], count));
+      const uint32_t shot = static_cast<uint32_t>(std::min(n, pilot));
+      shoot(p, replicate, 0, shot, 1.0 / static_cast<double>(n), {}, 1);
+      places.emplace_back();
+      for (const cl_float8& photon : photons_of_runs()) places.back().push_back({photon.s[0], photon.s[1], photon.s[2]});
+      stored.push_back(static_cast<double>(places.back().size()) / shot * static_cast<double>(n));
+    }
+    // As many of each pair's as is its share of what is stored.
+    const double expected = std::accumulate(stored.begin(), stored.end(), 0.0);
+    std::vector<glm::vec3> sample;
+    for (size_t p = 0; p < pairs.size() && expected > 0.0; ++p) {
+      const auto wanted = std::lround(static_cast<double>(pilot) * stored[p] / expected);
+      const auto taken = std::min<std::ptrdiff_t>(wanted, static_cast<std::ptrdiff_t>(places[p].size()));
+      sample.insert(sample.end(), places[p].begin(), places[p].begin() + taken);
+    }
+    grid.start(sample, static_cast<uint64_t>(expected));
+  }
+
+  /// What the last launch stored.
+  std::vector<cl_float8> photons_of_runs() const {
+    const uint32_t n_runs = static_cast<uint32_t>(runs.reports.size());
+    const std::vector<float> fields = context.device.read(runs.photons, 0, kernel::photon_in_run(runs.length, n_runs, 0));
+    std::vector<cl_float8> photons;
+    for (uint32_t run = 0; run < n_runs; ++run)
+      for (uint32_t i = 0; i < runs.reports[run].photons[OUTCOME_STORED]; ++i) {
+        cl_float8 photon{};
+        for (uint32_t field = 0; field < PHOTON_FIELDS; ++field)
+          photon.s[field] = fields[kernel::photon_in_run(runs.length, run, field) + i];
+        photons.push_back(photon);
+      }
+    return photons;
   }
 
   void book(const kernel::PhotonRunData& run) {
@@ -141,8 +186,6 @@ struct PhotonPass::State {
     balance.photons_lost += run.photons[OUTCOME_LOST];
     balance.photons_cut += run.photons[OUTCOME_CUT];
     balance.surfaces_met += run.surfaces;
-    map.stored_by_run.push_back(run.photons[OUTCOME_STORED]);
-    map.count += run.photons[OUTCOME_STORED];
   }
 };
 
@@ -151,76 +194,72 @@ PhotonPass::PhotonPass(const KernelContext& context, uint64_t largest_pass)
 PhotonPass::~PhotonPass() = default;
 
 uint64_t PhotonPass::capacity(const Device& device) {
-  // The largest array is that of the unsorted photons; half of the memory may go to the map.
-  const uint64_t by_allocation = device.info().max_allocation / sizeof(cl_float8);
-  const uint64_t by_memory = device.info().memory / 2 / (2 * sizeof(cl_float8));
-  return std::min<uint64_t>(std::min(by_allocation, by_memory) / 16 * 15, 1u << 30);
+  // A photon takes a row of one array, with some to spare; half of the memory may go to it.
+  constexpr double row = 1.5 * PHOTON_ROW * sizeof(float);
+  const double bytes = static_cast<double>(std::min(device.info().max_allocation, device.info().memory / 2));
+  return std::min<uint64_t>(static_cast<uint64_t>(bytes / row), 1u << 30);
 }
 
 void PhotonPass::run(uint32_t replicate, uint64_t before, uint64_t count,
                      const std::function<void(double)>& progress) {
   State& s = *state_;
   assert(count <= s.capacity);
-  s.map.count = 0;
-  s.map.stride = 0;
-  s.map.stored_by_run.clear();
-
-  double flux = 0.0;
-  for (const Pair& pair : s.pairs) flux += pair.flux;
-  const auto share_of = [flux](const Pair& pair, uint64_t photons) {
-    return static_cast<uint64_t>(std::llround(pair.flux / flux * static_cast<double>(photons)));
-  };
-  uint64_t runs = 0;
-  for (const Pair& pair : s.pairs) runs += std::max<uint64_t>(1, share_of(pair, count)) / s.map.run_length + 1;
-  s.make_room(runs);
-
+  const bool nearest = s.context.features.nearest_photons;
+  if (!nearest) s.start_grid(replicate, count);
   for (const kernel::LightData& light : s.context.data.lights)
     s.balance.not_aimed += total_power(s.context.data, light);
+  std::vector<cl_float8> photons;  // for the tree
   uint64_t emitted = 0;
   for (uint32_t p = 0; p < s.pairs.size(); ++p) {
-    const Pair& pair = s.pairs[p];
-    const uint64_t n = std::max<uint64_t>(1, share_of(pair, count));
-    const uint64_t n_before = before == 0 ? 0 : share_of(pair, before);
+    const uint64_t n = std::max<uint64_t>(1, s.share(s.pairs[p], count));
+    const uint64_t n_before = before == 0 ? 0 : s.share(s.pairs[p], before);
     for (uint64_t first = 0; first < n;) {
-      const auto start = std::chrono::steady_clock::now();
-      const uint32_t in_launch =
-          static_cast<uint32_t>(std::min<uint64_t>(uint64_t{s.runs_per_launch} * s.map.run_length, n - first));
-      s.shoot(pair, p, replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n));
+      const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(photons_per_launch, n - first));
+      s.shoot(p, replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n), s.grid.grid(),
+              nearest ? 1 : s.grid.buckets());
+      for (const kernel::PhotonRunData& run : s.runs.reports) s.book(run);
+      if (nearest) {
+        const std::vector<cl_float8> stored = s.photons_of_runs();
+        photons.insert(photons.end(), stored.begin(), stored.end());
+      } else {
+        s.grid.add(s.runs);
+      }
       first += in_launch;
       emitted += in_launch;
       progress(static_cast<double>(emitted) / static_cast<double>(count));
-      // What a launch holds changes nothing but its time.
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      if (2.0 * seconds < seconds_per_launch)
-        s.runs_per_launch = std::min(2 * s.runs_per_launch, 1u << 14);
-      else if (seconds > 2.0 * seconds_per_launch)
-        s.runs_per_launch = std::max(s.runs_per_launch / 2, 8u);
     }
   }
-  if (s.grid)
-    s.grid->sort(s.map);
+  if (nearest)
+    fill_photon_tree(s.context.device, s.tree, photons, s.context.scene.photons.max_radius);
   else
-    fill_photon_tree(s.context.device, s.map, s.context.scene.photons.max_radius);
+    s.grid.finish();
 }
 
-const PhotonMap& PhotonPass::map() const { return state_->map; }
+const PhotonMap& PhotonPass::map() const {
+  return state_->context.features.nearest_photons ? state_->tree : state_->grid.map();
+}
 const PhotonBalance& PhotonPass::balance() const { return state_->balance; }
 
 std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map) {
   std::vector<cl_float8> photons;
-  const auto append = [&](size_t first, size_t stride, size_t count) {
-    const size_t before = photons.size();
-    photons.resize(before + count, cl_float8{});
-    for (size_t field = 0; field < PHOTON_FIELDS; ++field) {
-      const std::vector<float> values = device.read(map.photons, first + field * stride, count);
-      for (size_t i = 0; i < count; ++i) photons[before + i].s[field] = values[i];
+  const auto append = [&photons](const float* fields, size_t stride, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+      cl_float8 photon{};
+      for (size_t field = 0; field < PHOTON_FIELDS; ++field) photon.s[field] = fields[field * stride + i];
+      photons.push_back(photon);
     }
   };
-  if (map.stride > 0) {
-    append(0, map.stride, map.count);
+  if (map.leaves.size() > 0) {
+    const std::vector<float> leaves = device.read(map.leaves, 0, map.leaves.size());
+    for (size_t leaf = 0; 8 * leaf < map.count; ++leaf)
+      append(&leaves[leaf * PHOTON_FIELDS * 8], 8, std::min<size_t>(8, map.count - 8 * leaf));
   } else {
-    for (uint32_t run = 0; run < map.stored_by_run.size(); ++run)
-      append(kernel::photon_in_run(map.run_length, run, 0), map.run_length + RUN_MARGIN, map.stored_by_run[run]);
+    const std::vector<kernel::BucketData> buckets = device.read(map.buckets, 0, map.bucket_counts.size());
+    for (size_t b = 0; b < buckets.size(); ++b) {
+      const std::vector<float> fields =
+          device.read(map.photons, size_t{buckets[b].start} * BUCKET_UNIT, size_t{PHOTON_FIELDS} * buckets[b].stride);
+      append(fields.data(), buckets[b].stride, map.bucket_counts[b]);
+    }
   }
   return photons;
 }
@@ -233,7 +272,7 @@ unsigned set_map_arguments(cl::Kernel& kernel, unsigned first, const PhotonMap& 
   }
   const cl_float4 low = {{map.low[0], map.low[1], map.low[2], 0}};
   const cl_float4 high = {{map.high[0], map.high[1], map.high[2], 0}};
-  set_arguments(kernel, first, map.count, map.grid, map.radius, low, high, map.stride, map.first_of_cell, map.photons);
+  set_arguments(kernel, first, map.count, map.grid, map.radius, low, high, map.first_of_cell, map.buckets, map.photons);
   return first + 8;
 }
 

@@ -24,18 +24,27 @@ struct PhotonBalance {
   uint64_t surfaces_met = 0;    ///< rays traced
 };
 
-/// Photons as they are stored, run by run, and sorted: for the k nearest into the tree, else into the grid.
+/// What a launch of photons leaves, run by run (kernels/photon_map.h).
+struct PhotonRuns {
+  uint32_t length = 0;                      ///< of a run
+  Buffer<float> photons;
+  Buffer<uint32_t> counts;                  ///< photons of each run in each bucket of the grid
+  Buffer<kernel::PhotonRunData> on_device;
+  std::vector<kernel::PhotonRunData> reports;
+};
+
+/// The photons of a pass, sorted into a grid or, for the k nearest, into a tree (kernels/photon_map.h).
 struct PhotonMap {
   uint32_t count = 0;
-  Buffer<float> photons;        ///< kernels/photon_map.h: run by run, and once sorted into the grid, in its order
-  Buffer<kernel::PhotonRunData> runs;
-  std::vector<uint32_t> stored_by_run;
-  uint32_t run_length = 0;
-  uint32_t stride = 0;          ///< of the sorted photons; 0: not sorted into the grid
-  Buffer<uint32_t> first_of_cell;
+  float radius = 0.0f;                      ///< of the estimate [m]; for the k nearest, the greatest
+  std::array<float, 4> low{}, high{};       ///< box around all photons [m]
+  // The grid.
   kernel::GridData grid{};
-  float radius = 0.0f;          ///< of the estimate [m]; for the k nearest, the greatest
-  std::array<float, 4> low{}, high{};  ///< box around all photons [m]
+  Buffer<float> photons;
+  Buffer<kernel::BucketData> buckets;
+  std::vector<uint32_t> bucket_counts;
+  Buffer<uint32_t> first_of_cell;
+  // The tree.
   kernel::PhotonTreeData tree{};
   Buffer<float> leaves, nodes;
 };

@@ -117,10 +117,11 @@ PhotonTree build_photon_tree(std::span<const cl_float8> photons) {
   return tree;
 }
 
-void fill_photon_tree(Device& device, PhotonMap& map, double max_radius) {
+void fill_photon_tree(Device& device, PhotonMap& map, std::span<const cl_float8> photons, double max_radius) {
+  map.count = static_cast<uint32_t>(photons.size());
   map.radius = static_cast<float>(max_radius);
   if (map.count == 0) return;
-  const PhotonTree tree = build_photon_tree(read_photons(device, map));
+  const PhotonTree tree = build_photon_tree(photons);
   map.tree = tree.shape;
   auto fill = [&device](Buffer<float>& buffer, const std::vector<float>& values) {
     if (buffer.size() < values.size()) buffer = device.allocate<float>(values.size(), "photon map");

@@ -19,7 +19,7 @@ struct PhotonTree {
 /// longest. The same photons in the same order give the same tree, bit by bit.
 PhotonTree build_photon_tree(std::span<const cl_float8> photons);
 
-/// Fills the tree of `map` from its unsorted photons, reusing its buffers. `max_radius` is that of the estimate [m].
-void fill_photon_tree(Device& device, PhotonMap& map, double max_radius);
+/// Makes `map` the tree of `photons`, reusing its buffers. `max_radius` is that of the estimate [m].
+void fill_photon_tree(Device& device, PhotonMap& map, std::span<const cl_float8> photons, double max_radius);
 
 }  // namespace vitrum

@@ -1,7 +1,8 @@
 #include "render/render.hpp"
 
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <span>
 
 #include "core/log.hpp"
@@ -20,6 +21,24 @@ constexpr uint32_t samples_per_download = 32;
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+/// Books the CPU time of the process, all threads and the system's part of it, while it lives.
+class CpuTimer {
+ public:
+  explicit CpuTimer(double& seconds) : seconds_(seconds), start_(now()) {}
+  ~CpuTimer() { seconds_ += now() - start_; }
+  CpuTimer(const CpuTimer&) = delete;
+  CpuTimer& operator=(const CpuTimer&) = delete;
+
+ private:
+  static double now() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  double& seconds_;
+  double start_;
+};
 
 /// `channels` planes of a pass's film, interleaved as the film has them.
 std::vector<float> interleaved(const std::vector<float>& planes, size_t pixels, size_t first, int channels) {
@@ -94,6 +113,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     const double photon_share = photon_pass ? 0.3 : 0.0;
     const auto done = [&](double within) { progress.update((static_cast<double>(pass) + within) / static_cast<double>(passes)); };
     if (photon_pass) {
+      const CpuTimer timer(result.cpu_seconds["photon"]);
       const uint64_t count = photons * (pass + 1) / passes - photons * pass / passes;
       photon_pass->run(replicate, photons_before[replicate], count, [&](double d) { done(photon_share * d); });
       photons_before[replicate] += count;
@@ -108,6 +128,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     }
     const uint32_t first = static_cast<uint32_t>(samples * pass / passes);
     const uint32_t last = static_cast<uint32_t>(samples * (pass + 1) / passes);
+    const CpuTimer timer(result.cpu_seconds["camera"]);
     for (uint32_t sample = first; sample < last; sample += samples_per_download) {
       const uint32_t count = std::min(samples_per_download, last - sample);
       camera.run(replicate, sample, count, samples, photon_pass ? &photon_pass->map() : nullptr, [&](double d) {

@@ -39,6 +39,7 @@ struct RenderResult {
   Features features;
   double photon_radius = 0.0;   ///< of the last pass [m]
   std::map<std::string, double> seconds;    ///< wall time by stage: tree, build, upload, and the kernels' own
+  std::map<std::string, double> cpu_seconds;  ///< CPU time of the process, all threads, in "photon" and "camera" passes
   std::chrono::steady_clock::time_point first_pixels;  ///< when the first of them were there
   std::map<std::string, uint64_t> memory;   ///< device buffers by purpose [bytes]
   int passes = 0;

@@ -1,9 +1,11 @@
 #pragma once
 // Photons and places to gather them at, and the kernels that do so, for tests and benchmarks.
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "render/photon_grid.hpp"
@@ -39,17 +41,23 @@ class Gatherer {
   std::vector<glm::vec3> within(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, float radius) {
     scene_.photons.estimate = PhotonEstimate::fixed_radius;
     scene_.photons.radius = static_cast<double>(radius);
-    PhotonMap map = stored(photons);
-    PhotonGrid(context_).sort(map);
-    return run(within_, "within", map, queries);
+    PhotonGrid grid(context_);
+    std::vector<glm::vec3> places;
+    for (const cl_float8& p : photons) places.push_back({p.s[0], p.s[1], p.s[2]});
+    // As a pass does: room is made for what a few photons promise.
+    grid.start(std::span(places).first(std::min<size_t>(places.size(), 1000)), places.size());
+    for (size_t first = 0; first < photons.size(); first += 5 * run_length)
+      grid.add(runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid));
+    grid.finish();
+    return run(within_, "within", grid.map(), queries);
   }
 
   std::vector<glm::vec3> nearest(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, uint32_t k,
                                  float max_radius) {
     scene_.photons.estimate = PhotonEstimate::nearest;
     scene_.photons.nearest = static_cast<int>(k);
-    PhotonMap map = stored(photons);
-    fill_photon_tree(device_, map, static_cast<double>(max_radius));
+    PhotonMap map;
+    fill_photon_tree(device_, map, photons, static_cast<double>(max_radius));
     return run(nearest_, "nearest", map, queries);
   }
 
@@ -57,6 +65,8 @@ class Gatherer {
   std::map<std::string, double> seconds() { return device_.stage_seconds(); }
 
  private:
+  static constexpr size_t run_length = 1000;
+
   cl::Kernel gather_kernel(const KernelFiles& files, bool nearest) const {
     Features features;
     features.caustics = true;
@@ -69,22 +79,37 @@ class Gatherer {
                       "gather_test");
   }
 
-  /// The photons as a single run has them.
-  PhotonMap stored(const std::vector<cl_float8>& photons) {
-    PhotonMap map;
-    map.count = static_cast<uint32_t>(photons.size());
-    map.run_length = map.count;
-    map.stored_by_run = {map.count};
-    std::vector<float> fields(std::max<size_t>(kernel::photon_in_run(map.run_length, 1, 0),
-                                               size_t{PHOTON_FIELDS} * padded(map.count + 8)));
-    for (size_t i = 0; i < photons.size(); ++i)
-      for (uint32_t field = 0; field < PHOTON_FIELDS; ++field)
-        fields[kernel::photon_in_run(map.run_length, 0, field) + i] = photons[i].s[field];
-    map.photons = device_.upload(fields, "photons");
-    kernel::PhotonRunData run{};
-    run.photons[OUTCOME_STORED] = map.count;
-    map.runs = device_.upload(std::vector<kernel::PhotonRunData>{run}, "photons");
-    return map;
+  /// Photons as a launch leaves them, in runs that are nearly full.
+  PhotonRuns runs_of(std::span<const cl_float8> photons, const PhotonGrid& grid) {
+    PhotonRuns runs;
+    runs.length = run_length + 3;
+    const uint32_t n_runs = static_cast<uint32_t>((photons.size() + run_length - 1) / run_length);
+    std::vector<float> fields(kernel::photon_in_run(runs.length, n_runs, 0));
+    std::vector<uint32_t> counts(size_t{n_runs} * grid.buckets());
+    for (uint32_t run = 0; run < n_runs; ++run) {
+      const size_t first = run * run_length, count = std::min(run_length, photons.size() - first);
+      kernel::PhotonRunData report{};
+      report.photons[OUTCOME_STORED] = static_cast<uint32_t>(count);
+      std::fill_n(report.low, 3, INFINITY);
+      std::fill_n(report.high, 3, -INFINITY);
+      for (size_t i = 0; i < count; ++i) {
+        const cl_float8& photon = photons[first + i];
+        const uint32_t cell = cell_of(grid.grid(), {photon.s[0], photon.s[1], photon.s[2]});
+        ++counts[run * grid.buckets() + (cell >> grid.grid().bucket_shift)];
+        for (uint32_t field = 0; field < PHOTON_ROW; ++field)
+          fields[kernel::photon_in_run(runs.length, run, field) + i] =
+              field == PHOTON_CELL ? std::bit_cast<float>(cell) : photon.s[field];
+        for (int axis = 0; axis < 3; ++axis) {
+          report.low[axis] = std::min(report.low[axis], photon.s[axis]);
+          report.high[axis] = std::max(report.high[axis], photon.s[axis]);
+        }
+      }
+      runs.reports.push_back(report);
+    }
+    runs.photons = device_.upload(fields, "photons");
+    runs.counts = device_.upload(counts, "photons");
+    runs.on_device = device_.upload(runs.reports, "photons");
+    return runs;
   }
 
   /// Radiance of the queries.
