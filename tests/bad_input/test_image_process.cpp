@@ -172,7 +172,8 @@ TEST_CASE("process for pictures: threads share it, and each gets its own picture
       const Picture picture = read_picture(path, asked_by);
       for (const glm::vec3& pixel : picture.pixels)
         if (pixel != picture.pixels.front()) return -1.0f;
-      for (const float value : read_layers(path, asked_by).layers.front().values)
+      const auto layered = read_layers(path, asked_by);
+      for (const float value : layered.layers.front().values)
         if (value != picture.pixels.front().x) return -1.0f;
       return picture.pixels.front().x;
     }));
@@ -243,7 +244,7 @@ TEST_CASE("a render whose process for pictures is killed while it reads a textur
 TEST_CASE("a render outlives its process for pictures, which outlives signals of the terminal; none is left") {
   const TemporaryFolder folder;
   VitrumProcess process({"render", default_scene, "-o", folder / "a.png", "-o", folder / "b.exr", "--size", "128x128",
-                         "--samples", "64"});
+                         "--samples", "64", "--set", "render.textures=false"});  // so that it is idle when it dies
   const pid_t first = image_process_of(process.number());
   REQUIRE(process.has_said("features:"));
   process.send(SIGSTOP);
