@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   vitrum::add_compare_command(app, exit_code);
   vitrum::add_info_command(app);
   vitrum::add_devices_command(app);
+  vitrum::add_verify_command(app, exit_code);
   app.footer("First steps:\n  vitrum render models/default_scene/scene.toml -o picture.png\n  vitrum render --help");
   try {
     app.parse(argc, argv);

@@ -7,6 +7,8 @@ namespace vitrum {
 
 /// How vitrum ends when it has done what it was asked for, and a threshold is exceeded; 1 is for errors, 2 for usage.
 constexpr int exit_exceeded = 3;
+/// How `vitrum verify` ends when a check fails.
+constexpr int exit_unverified = 1;
 
 /// `vitrum render SCENE -o FILE ...`
 void add_render_command(CLI::App& app);
@@ -16,5 +18,7 @@ void add_compare_command(CLI::App& app, int& exit_code);
 void add_info_command(CLI::App& app);
 /// `vitrum devices`
 void add_devices_command(CLI::App& app);
+/// `vitrum verify`; sets `exit_code` to exit_unverified if a check fails.
+void add_verify_command(CLI::App& app, int& exit_code);
 
 }  // namespace vitrum

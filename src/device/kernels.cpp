@@ -43,6 +43,13 @@ void expand(const KernelFiles& files, const std::string& name, std::set<std::str
 
 }  // namespace
 
+std::string kernel_source(const KernelFiles& files, const std::string& name) {
+  std::set<std::string> seen;
+  std::string out = "#line 1 \"" + name + "\"\n";
+  expand(files, name, seen, out);
+  return out;
+}
+
 std::string stages_source(const KernelFiles& files, const std::vector<std::string>& stages) {
   std::set<std::string> seen;
   std::string out;

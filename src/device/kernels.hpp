@@ -14,6 +14,10 @@ struct KernelFiles {
   std::string dump_folder;      ///< what was compiled is written here (--dump-kernels DIR); "": nowhere
 };
 
+/// The text of kernels/NAME ("checks/fresnel.cl") with every #include "..." replaced by the file, each once. Throws
+/// Error for a file that is missing.
+std::string kernel_source(const KernelFiles& files, const std::string& name);
+
 /// The text of kernels/stages/NAME.cl of each stage, one after the other, with every #include "..." replaced by the
 /// file, each once. Throws Error for a file that is missing.
 std::string stages_source(const KernelFiles& files, const std::vector<std::string>& stages);

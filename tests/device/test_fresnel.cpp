@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "device/interface.hpp"
+#include "device/kernels.hpp"
 #include "device/opencl.hpp"
-#include "fresnel_inputs.hpp"
+#include "verify/fresnel_inputs.hpp"
 
 using namespace vitrum;
 
@@ -52,10 +53,10 @@ class Comparison {
         most_(outputs.size()),
         inputs_(size_t{batch} * n_inputs),
         expected_(size_t{batch} * outputs.size()) {
-    const std::string folder = VITRUM_SOURCE_DIR;
-    kernel_ = cl::Kernel(device.build("fresnel_test.cl", "#include \"fresnel_test.cl\"\n",
-                                      "-cl-std=CL1.2 -I " + folder + "/tests/device -I " + folder +
-                                          "/kernels -DTEST_WIDTH=" + std::to_string(width)),
+    kernel_ = cl::Kernel(device.build("checks/fresnel.cl",
+                                      "#undef WIDTH\n#define WIDTH " + std::to_string(width) + "\n" +
+                                          kernel_source({}, "checks/fresnel.cl"),
+                                      "-cl-std=CL1.2"),
                          kernel);
   }
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "photon_run.hpp"
+#include "verify/photon_run.hpp"
 #include "reference/ball_caustic.hpp"
 #include "render/render.hpp"
 #include "scene/scene_file.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "device/interface.hpp"
-#include "fresnel_inputs.hpp"
+#include "verify/fresnel_inputs.hpp"
 #include "reference/fresnel.hpp"
 
 using namespace vitrum;

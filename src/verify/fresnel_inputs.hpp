@@ -1,6 +1,6 @@
 #pragma once
-// Borders, angles and absorbing media for the tests of kernels/fresnel.cl: all binades, and the cases that break the
-// usual formulas. The same seed gives the same inputs.
+// Borders, angles and absorbing media for the checks and tests of kernels/fresnel.cl: all binades, and the cases that
+// break the usual formulas. The same seed gives the same inputs.
 
 #include <algorithm>
 #include <array>

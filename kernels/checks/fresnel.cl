@@ -1,9 +1,5 @@
-// kernels/fresnel.cl by itself: each lane of a work-item one input. Fields of `count` floats follow each other.
-// TEST_WIDTH overrides the width that suits the device.
-#ifdef TEST_WIDTH
-#undef WIDTH
-#define WIDTH TEST_WIDTH
-#endif
+// kernels/fresnel.cl by itself, for `vitrum verify` and the tests: each lane of a work-item one input. Reads `in`, writes
+// `out`: fields of `count` floats that follow each other. `count` is a multiple of WIDTH.
 #include "fresnel.cl"
 
 #define INPUT(field) LOAD(in + (field) * (ulong)count, i)

@@ -1,5 +1,5 @@
 #pragma once
-// Photon passes by themselves, so that a test can look at every photon that is stored.
+// Photon passes by themselves, so that a check can look at every photon that is stored.
 
 #include <memory>
 #include <vector>
@@ -12,12 +12,12 @@ namespace vitrum {
 /// A scene that has no meshes, on a device, ready to shoot photons.
 class PhotonRun {
  public:
-  PhotonRun(const Scene& scene, Device& device, uint64_t largest_pass)
+  PhotonRun(const Scene& scene, Device& device, uint64_t largest_pass, const KernelFiles& files = {})
       : scene_(scene),
         device_(device),
         features_(scene_features(scene)),
         data_(scene_data(scene, features_)),
-        kernels_(device, {}, stages_for(features_), features_.build_options()),
+        kernels_(device, files, {"photons", "photon_sort"}, features_.build_options()),
         device_scene_(upload(device, data_, features_, nullptr)),
         pass_(KernelContext{device_, kernels_, scene_, data_, device_scene_, features_}, largest_pass) {}
 

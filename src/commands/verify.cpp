@@ -1,0 +1,139 @@
+#include "verify/check.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "commands/outputs.hpp"
+#include "commands/verify_page.hpp"
+#include "core/error.hpp"
+#include "core/log.hpp"
+#include "core/progress.hpp"
+#include "core/suggest.hpp"
+#include "core/version.hpp"
+#include "core/whole_file.hpp"
+
+namespace vitrum {
+namespace {
+
+struct VerifyArguments {
+  std::string device, report, report_html;
+  std::vector<std::string> only;
+  KernelFiles kernels;
+  bool full = false, quick = false;
+};
+
+/// The groups named, all if none is. Throws Error for a name that is none.
+std::vector<CheckGroup> chosen_groups(const std::vector<std::string>& names) {
+  if (names.empty()) return check_groups();
+  std::vector<CheckGroup> chosen;
+  for (const std::string& name : names) {
+    std::vector<std::string> known;
+    const size_t before = chosen.size();
+    for (const CheckGroup& group : check_groups()) {
+      known.push_back(group.name);
+      if (name == group.name) chosen.push_back(group);
+    }
+    if (chosen.size() == before)
+      throw Error({"--only " + name}, "there is no such group of checks", suggestion(name, known, "groups"));
+  }
+  return chosen;
+}
+
+std::string table_row(const CheckResult& r) {
+  char line[400];
+  std::snprintf(line, sizeof line, "%-36s %10llu  %9.3g %9.3g  %-15s %-4s  %s\n", r.name.c_str(),
+                static_cast<unsigned long long>(r.cases), r.worst, r.bound, r.unit.c_str(), r.passed() ? "pass" : "FAIL",
+                r.truth.c_str());
+  return line;
+}
+
+std::string json_report(const VerifyRun& run) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const CheckResult& r : run.results)
+    rows.push_back({{"check", r.name}, {"passed", r.passed()}, {"cases", r.cases}, {"worst", r.worst}, {"bound", r.bound},
+                    {"unit", r.unit}, {"truth", r.truth}, {"worst_input", r.worst_input}});
+  const nlohmann::ordered_json report = {
+      {"version", version()},
+      {"device", {{"name", run.device.name}, {"platform", run.device.platform}, {"version", run.device.version},
+                  {"driver", run.device.driver}}},
+      {"mode", run.full ? "full" : "quick"},
+      {"seconds", run.seconds},
+      {"checks", rows},
+  };
+  return report.dump(2) + "\n";
+}
+
+int run_verify(const VerifyArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<CheckGroup> groups = chosen_groups(arguments.only);
+  for (const std::string& file : {arguments.report, arguments.report_html})
+    if (!file.empty()) check_whole_file(file);
+  if (!arguments.kernels.folder.empty() && !std::filesystem::is_directory(arguments.kernels.folder))
+    throw Error({"--kernels " + arguments.kernels.folder}, "there is no such folder",
+                "name the folder kernels/ of vitrum's sources");
+  prepare_opencl(0);
+  Device device(arguments.device);
+  std::printf("%s\n%-36s %10s  %9s %9s  %-15s %-4s  %s\n", device.info().name.c_str(), "check", "cases", "worst", "bound",
+              "unit", "", "truth");
+  std::fflush(stdout);
+
+  VerifyRun run;
+  run.device = device.info();
+  run.full = arguments.full;
+  {
+    Progress progress("verify");
+    const bool was_quiet = quiet();
+    set_quiet(true);            // the pictures that are rendered on the way are nobody's business
+    for (size_t k = 0; k < groups.size(); ++k) {
+      progress.update(static_cast<double>(k) / static_cast<double>(groups.size()));
+      const CheckContext context{device, arguments.device, arguments.kernels, arguments.full};
+      for (CheckResult& result : groups[k].run(context)) run.results.push_back(std::move(result));
+    }
+    set_quiet(was_quiet);
+  }
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  size_t failed = 0;
+  for (const CheckResult& result : run.results) {
+    std::fputs(table_row(result).c_str(), stdout);
+    failed += !result.passed();
+  }
+  std::printf("%zu checks, %zu failed, %.1f s\n", run.results.size(), failed, run.seconds);
+  for (const CheckResult& result : run.results)
+    if (!result.passed())
+      std::printf("FAIL %s: %g %s, more than %g, at %s\n", result.name.c_str(), result.worst, result.unit.c_str(),
+                  result.bound, result.worst_input.c_str());
+  if (!arguments.report.empty()) write_whole_file(arguments.report, json_report(run));
+  if (!arguments.report_html.empty()) write_whole_file(arguments.report_html, verify_page(run));
+  return failed == 0 ? 0 : exit_unverified;
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("verify", "Check the device's answers against closed forms");
+  const auto arguments = std::make_shared<VerifyArguments>();
+  command->add_option("--device", arguments->device, "OpenCL device: number or piece of its name, as `vitrum devices` lists")
+      ->type_name("NAME");
+  const auto quick = command->add_flag("--quick", arguments->quick, "Some seconds of checks (the default)");
+  command->add_flag("--full", arguments->full, "Minutes of checks: more inputs, larger pictures, more photons")->excludes(quick);
+  command->add_option("--only", arguments->only, "Run this group of checks only (repeatable)")
+      ->type_name("GROUP")
+      ->allow_extra_args(false);
+  command->add_option("--report", arguments->report, "Write the table with the worst inputs as JSON")->type_name("FILE");
+  command->add_option("--report-html", arguments->report_html, "Write it as a page, with plots of error against input")
+      ->type_name("FILE");
+  command->add_option("--kernels", arguments->kernels.folder, "Read the kernels from this folder instead of the binary")
+      ->type_name("DIR");
+  std::string footer = "Groups of checks:\n";
+  for (const CheckGroup& group : check_groups())
+    footer += "  " + std::string(group.name) + std::string(16 - std::string(group.name).size(), ' ') + group.what + "\n";
+  command->footer(footer +
+                  "Exit code: 0 if all checks hold; 1 if one fails, with the input that shows it, or for an error;\n"
+                  "2 for unknown options. docs/verify.md tells more.");
+  command->callback([arguments, &exit_code] { exit_code = run_verify(*arguments); });
+}
+
+}  // namespace vitrum

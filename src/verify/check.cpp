@@ -1,0 +1,51 @@
+#include "verify/check.hpp"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <limits>
+
+#include "verify/groups.hpp"
+
+namespace vitrum {
+
+const std::vector<CheckGroup>& check_groups() {
+  static const std::vector<CheckGroup> groups = {
+      {"interface", "Fresnel and Snell, against quadruple precision", check_interface},
+      {"absorption", "Bouguer's law", check_absorption},
+      {"slab-and-ball", "pictures of a slab, a ball and nested balls, against closed forms", check_slab_and_ball},
+      {"photons", "balance of power, and caustics of a ball by quadrature", check_photons},
+      {"lights", "irradiance under each kind of light", check_lights},
+      {"determinism", "the same bits again, and with other group sizes", check_determinism},
+  };
+  return groups;
+}
+
+void Worst::add(double found, uint64_t index) {
+  ++cases;
+  if (found <= error) return;   // lets NaN through
+  if (std::isnan(found)) found = std::numeric_limits<double>::infinity();
+  if (found > error) {
+    error = found;
+    at = index;
+  }
+}
+
+void Worst::merge(const Worst& later) {
+  cases += later.cases;
+  if (later.error > error) {
+    error = later.error;
+    at = later.at;
+  }
+}
+
+std::string text(const char* format, ...) {
+  char buffer[400];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+}  // namespace vitrum

@@ -1,0 +1,143 @@
+// The irradiance of a plane under each kind of light, against closed forms.
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "film/statistics.hpp"
+#include "render/render.hpp"
+#include "verify/groups.hpp"
+#include "verify/scenes.hpp"
+
+namespace vitrum {
+namespace {
+
+using glm::dvec3;
+
+constexpr double pi = std::numbers::pi;
+constexpr int seeds = 16;
+constexpr double false_alarm = 1e-6;        // of the row, over all its estimates
+constexpr double rounding = 2e-6;           // relative: radiance is summed up in floats
+
+const dvec3 lamp(0.2, 1.1, -0.1);           // where all lights are
+constexpr double disc_radius = 0.4, ball_radius = 0.3;
+const dvec3 edge_u(0.7, 0, 0), edge_v(0, 0, 0.5);
+
+/// A white plane at y = 0 seen through a narrow lens around `place`, with all kinds of light in one scene, so that one
+/// build of the kernels serves them all; those but number `lit` are dark.
+Scene white_plane(size_t lit, const dvec3& place, double vertical_fov, int size) {
+  Scene scene;
+  scene.camera = {CameraType::pinhole, place + dvec3(0.5, 2.0, 0.4), place, {0, 1, 0}, vertical_fov};
+  scene.film.width = scene.film.height = size;
+  scene.materials.push_back(surface(Surface::opaque, 1.0));
+  add(scene, Plane{{0, 0, 0}, {0, 1, 0}, {}, {}}, 0);
+  const auto emitted = [lit](size_t light) { return Spectrum(light == lit ? 1.0 : 0.0); };
+  scene.lights.push_back({"point", {}, PointLight{lamp, emitted(0)}});
+  scene.lights.push_back({"directional", {}, DirectionalLight{glm::normalize(dvec3(1, -2, 0.5)), emitted(1)}});
+  scene.lights.push_back({"disc", {}, DiscLight{lamp, {0, -1, 0}, disc_radius, emitted(2)}});
+  scene.lights.push_back({"sphere", {}, SphereLight{lamp, ball_radius, emitted(3)}});
+  // Shines along cross(edge_u, edge_v): downwards.
+  scene.lights.push_back({"quad", {}, QuadLight{lamp - 0.5 * (edge_u + edge_v), edge_u, edge_v, emitted(4)}});
+  return scene;
+}
+
+/// Lambert's formula: irradiance of a polygon of radiance 1, clockwise as seen from `place` on a plane with normal `up`.
+double polygon(const std::array<dvec3, 4>& corners, const dvec3& place, const dvec3& up) {
+  double sum = 0.0;
+  for (size_t k = 0; k < corners.size(); ++k) {
+    const dvec3 a = glm::normalize(corners[k] - place), b = glm::normalize(corners[(k + 1) % corners.size()] - place);
+    sum += std::acos(glm::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::dot(glm::normalize(glm::cross(a, b)), up);
+  }
+  return std::abs(0.5 * sum);
+}
+
+/// Irradiance [W/m2] at `place` on the plane y = 0 by light `light` alone.
+double irradiance(size_t light, const dvec3& place) {
+  const dvec3 to = lamp - place;
+  const double h = to.y, r2 = to.x * to.x + to.z * to.z, d2 = glm::dot(to, to);
+  switch (light) {
+    case 0: return h / (d2 * std::sqrt(d2));
+    case 1: return 2 / std::sqrt(1 + 4 + 0.25);
+    case 2: {                   // Foote 1915: a disc parallel to the plane, at any place
+      const double R2 = disc_radius * disc_radius, sum = h * h + r2 + R2;
+      return 0.5 * pi * (1 - (h * h + r2 - R2) / std::sqrt(sum * sum - 4 * r2 * R2));
+    }
+    case 3: return pi * ball_radius * ball_radius / d2 * (h / std::sqrt(d2));
+    default: {
+      const dvec3 corner = lamp - 0.5 * (edge_u + edge_v);
+      return polygon({corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v}, place, {0, 1, 0});
+    }
+  }
+}
+
+std::vector<double> rendered(const CheckContext& context, const Scene& scene) {
+  RenderOptions options;
+  options.kernels = context.kernels;
+  return render(scene, context.device, options).film.mean("radiance");
+}
+
+/// Lights without an area: pixel by pixel.
+CheckResult check_points(const CheckContext& context) {
+  const int size = context.full ? 256 : 48;
+  Worst worst;
+  std::string where;
+  for (size_t light = 0; light < 2; ++light) {
+    Scene scene = white_plane(light, {0.3, 0, 0.1}, 70, size);
+    scene.render.samples = 1;
+    const std::vector<double> radiance = rendered(context, scene);
+    const Camera& camera = scene.camera;
+    const dvec3 forward = glm::normalize(camera.look_at - camera.eye);
+    const dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+    const double half = std::tan(0.5 * camera.vertical_fov * pi / 180);
+    for (int i = 0; i < size * size; ++i) {
+      const dvec3 ray = forward + half * ((2.0 * (i % size) + 1) / size - 1) * right + half * (1 - (2.0 * (i / size) + 1) / size) * up;
+      const dvec3 place = camera.eye - camera.eye.y / ray.y * ray;
+      const double error = std::abs(pi * radiance[3 * static_cast<size_t>(i)] / irradiance(light, place) - 1);
+      if (error > worst.error) where = text("%s light: pixel (%d, %d) of %d", light == 0 ? "point" : "directional", i % size, i / size, size);
+      worst.add(error, static_cast<uint64_t>(i));
+    }
+  }
+  return {"lights/point and directional", worst.cases, worst.error, 1e-5, "relative", "I h/d^3, E cos, each pixel", where};
+}
+
+}  // namespace
+
+std::vector<CheckResult> check_lights(const CheckContext& context) {
+  constexpr const char* names[] = {"", "", "disc", "sphere", "quad"};
+  std::vector<CheckResult> rows = {check_points(context)};
+  Worst worst;
+  std::string where;
+  double largest_error = 0.0;
+  for (size_t light = 2; light < 5; ++light)
+    for (const dvec3 place : {dvec3(lamp.x, 0, lamp.z), dvec3(0.9, 0, 0.4)}) {
+      // So narrow that the irradiance over the picture is that of its centre, within 1e-6.
+      Scene scene = white_plane(light, place, 0.02, 16);
+      scene.render.samples = context.full ? 1024 : 64;
+      double means[seeds], sum = 0.0, squares = 0.0;
+      for (int seed = 0; seed < seeds; ++seed) {
+        scene.render.seed = static_cast<uint64_t>(seed);
+        double total = 0.0;
+        const std::vector<double> radiance = rendered(context, scene);
+        for (const double value : radiance) total += value;
+        means[seed] = pi * total / static_cast<double>(radiance.size()) / irradiance(light, place);
+        sum += means[seed];
+      }
+      const double mean = sum / seeds;
+      for (const double value : means) squares += (value - mean) * (value - mean);
+      const double error = std::sqrt(squares / (seeds - 1) / seeds);
+      const double beyond = std::max(std::abs(mean - 1) - rounding, std::isnan(mean) ? NAN : 0.0);
+      const double t = beyond == 0.0 ? 0.0 : beyond / error;
+      if (t > worst.error || worst.cases == 0)
+        where = text("%s light, at (%g, 0, %g): found %.7f +- %.1e of the truth", names[light], place.x, place.z, mean, error);
+      worst.add(t, worst.cases);
+      largest_error = std::max(largest_error, error);
+    }
+  rows.push_back({"lights/disc, sphere, quad", worst.cases, worst.error,
+                  student_limit(sidak_level(false_alarm, worst.cases), seeds - 1), "standard errors",
+                  "Foote 1915; pi (R/d)^2 cos; Lambert's polygon", where});
+  rows.push_back({"lights/disc, sphere, quad: error", worst.cases, largest_error, 5e-4, "relative",
+                  "standard error of the estimates", ""});
+  return rows;
+}
+
+}  // namespace vitrum
