@@ -35,7 +35,7 @@ std::vector<CheckResult> check_absorption(const CheckContext& context) {
   FresnelKernel medium(context, "medium", 3);
   std::vector<CheckResult> rows;
 
-  const uint32_t count = context.full ? 16'000'000 : 800'000;
+  const uint32_t count = context.full ? 48'000'000 : 1'600'000;
   FresnelInputs inputs(200);
   Fields in(count, 3);
   for (uint32_t i = 0; i < count; ++i) {

@@ -95,7 +95,7 @@ struct AngleTally {
 
 /// R, T and total reflection of `count` cosines for each side of each glass.
 void check_angles(FresnelKernel& border, const CheckContext& context, std::vector<CheckResult>& rows) {
-  const uint32_t count = context.full ? 1'000'000 : 10'000;
+  const uint32_t count = context.full ? 2'000'000 : 50'000;
   AngleTally all;
   std::string worst_inputs[6];
   for (size_t side = 0; side < sides; ++side) {
@@ -200,7 +200,10 @@ void check_special_angles(FresnelKernel& border, std::vector<CheckResult>& rows)
   for (size_t i = 0; i < first_matched; ++i) {
     const double n2 = inputs[i].n.n_t / inputs[i].n.n_i * (inputs[i].n.n_t / inputs[i].n.n_i);
     const double s = (n2 - 1) / (n2 + 1);
-    brewster.add(std::max(std::abs(at(out_r_par, i)), std::abs(at(out_R, i) - s * s / 2)), i);
+    // The cosine is a float, so not quite Brewster's: what that does is no error.
+    const reference::Fresnel there = reference::fresnel(inputs[i].n.n_i, inputs[i].n.n_t, inputs[i].cosine);
+    brewster.add(std::max(std::abs(at(out_r_par, i)) - std::abs(there.r_par),
+                          std::abs(at(out_R, i) - s * s / 2) - std::abs(there.R - s * s / 2)), i);
   }
   for (size_t i = first_matched; i < first_odd; ++i)
     matched.add(std::abs(at(out_R, i)) + std::abs(at(out_T, i) - 1) + std::abs(at(out_refracted + 2, i) + 1), i);
@@ -240,7 +243,7 @@ struct DirectionTally {
 };
 
 void check_directions(FresnelKernel& border, const CheckContext& context, std::vector<CheckResult>& rows) {
-  const uint32_t count = context.full ? 4'000'000 : 120'000;
+  const uint32_t count = context.full ? 12'000'000 : 240'000;
   FresnelInputs inputs(100);
   Fields in(count, border_inputs);
   const auto side = [](uint32_t i) { return side_of(i % sides); };

@@ -15,29 +15,33 @@ namespace {
 using glm::dvec3;
 
 constexpr double pi = std::numbers::pi;
-constexpr int seeds = 16;
-constexpr double false_alarm = 1e-6;        // of the row, over all its estimates
+constexpr int seeds = 16;                   // their spread is the error
+constexpr double false_alarm = 1e-4;        // of the row, over all its estimates
 constexpr double rounding = 2e-6;           // relative: radiance is summed up in floats
 
-const dvec3 lamp(0.2, 1.1, -0.1);           // where all lights are
+/// Where light `light` is: so far from the others that they cast no shadow there.
+dvec3 lamp_of(size_t light) {
+  constexpr double x[] = {0.2, 10, -10, 20, -20};
+  return {x[light], 1.1, -0.1};
+}
 constexpr double disc_radius = 0.4, ball_radius = 0.3;
 const dvec3 edge_u(0.7, 0, 0), edge_v(0, 0, 0.5);
 
-/// A white plane at y = 0 seen through a narrow lens around `place`, with all kinds of light in one scene, so that one
+/// A white plane at y = 0 seen from `height` above it around `place`, with all kinds of light in one scene, so that one
 /// build of the kernels serves them all; those but number `lit` are dark.
-Scene white_plane(size_t lit, const dvec3& place, double vertical_fov, int size) {
+Scene white_plane(size_t lit, const dvec3& place, double height, double vertical_fov, int size) {
   Scene scene;
-  scene.camera = {CameraType::pinhole, place + dvec3(0.5, 2.0, 0.4), place, {0, 1, 0}, vertical_fov};
+  scene.camera = {CameraType::pinhole, place + dvec3(0.5, height, 0.4), place, {0, 1, 0}, vertical_fov};
   scene.film.width = scene.film.height = size;
   scene.materials.push_back(surface(Surface::opaque, 1.0));
   add(scene, Plane{{0, 0, 0}, {0, 1, 0}, {}, {}}, 0);
   const auto emitted = [lit](size_t light) { return Spectrum(light == lit ? 1.0 : 0.0); };
-  scene.lights.push_back({"point", {}, PointLight{lamp, emitted(0)}});
+  scene.lights.push_back({"point", {}, PointLight{lamp_of(0), emitted(0)}});
   scene.lights.push_back({"directional", {}, DirectionalLight{glm::normalize(dvec3(1, -2, 0.5)), emitted(1)}});
-  scene.lights.push_back({"disc", {}, DiscLight{lamp, {0, -1, 0}, disc_radius, emitted(2)}});
-  scene.lights.push_back({"sphere", {}, SphereLight{lamp, ball_radius, emitted(3)}});
+  scene.lights.push_back({"disc", {}, DiscLight{lamp_of(2), {0, -1, 0}, disc_radius, emitted(2)}});
+  scene.lights.push_back({"sphere", {}, SphereLight{lamp_of(3), ball_radius, emitted(3)}});
   // Shines along cross(edge_u, edge_v): downwards.
-  scene.lights.push_back({"quad", {}, QuadLight{lamp - 0.5 * (edge_u + edge_v), edge_u, edge_v, emitted(4)}});
+  scene.lights.push_back({"quad", {}, QuadLight{lamp_of(4) - 0.5 * (edge_u + edge_v), edge_u, edge_v, emitted(4)}});
   return scene;
 }
 
@@ -53,7 +57,7 @@ double polygon(const std::array<dvec3, 4>& corners, const dvec3& place, const dv
 
 /// Irradiance [W/m2] at `place` on the plane y = 0 by light `light` alone.
 double irradiance(size_t light, const dvec3& place) {
-  const dvec3 to = lamp - place;
+  const dvec3 to = lamp_of(light) - place;
   const double h = to.y, r2 = to.x * to.x + to.z * to.z, d2 = glm::dot(to, to);
   switch (light) {
     case 0: return h / (d2 * std::sqrt(d2));
@@ -64,7 +68,7 @@ double irradiance(size_t light, const dvec3& place) {
     }
     case 3: return pi * ball_radius * ball_radius / d2 * (h / std::sqrt(d2));
     default: {
-      const dvec3 corner = lamp - 0.5 * (edge_u + edge_v);
+      const dvec3 corner = lamp_of(4) - 0.5 * (edge_u + edge_v);
       return polygon({corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v}, place, {0, 1, 0});
     }
   }
@@ -82,7 +86,7 @@ CheckResult check_points(const CheckContext& context) {
   Worst worst;
   std::string where;
   for (size_t light = 0; light < 2; ++light) {
-    Scene scene = white_plane(light, {0.3, 0, 0.1}, 70, size);
+    Scene scene = white_plane(light, lamp_of(light) * dvec3(1, 0, 1) + dvec3(0.3, 0, 0.1), 2.0, 70, size);
     scene.render.samples = 1;
     const std::vector<double> radiance = rendered(context, scene);
     const Camera& camera = scene.camera;
@@ -109,9 +113,10 @@ std::vector<CheckResult> check_lights(const CheckContext& context) {
   std::string where;
   double largest_error = 0.0;
   for (size_t light = 2; light < 5; ++light)
-    for (const dvec3 place : {dvec3(lamp.x, 0, lamp.z), dvec3(0.9, 0, 0.4)}) {
-      // So narrow that the irradiance over the picture is that of its centre, within 1e-6.
-      Scene scene = white_plane(light, place, 0.02, 16);
+    for (const dvec3& aside : {dvec3(0, 0, 0), dvec3(0.7, 0, 0.5)}) {
+      const dvec3 place = lamp_of(light) * dvec3(1, 0, 1) + aside;
+      // From below the light, and so narrow that the irradiance over the picture is that of its centre, within 1e-6.
+      Scene scene = white_plane(light, place, 0.7, 0.02, 16);
       scene.render.samples = context.full ? 1024 : 64;
       double means[seeds], sum = 0.0, squares = 0.0;
       for (int seed = 0; seed < seeds; ++seed) {
