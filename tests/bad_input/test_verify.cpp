@@ -1,0 +1,63 @@
+// `vitrum verify`: passes, fails with kernels in which a formula is wrong and names the check, refuses what it does not know.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_line.hpp"
+
+using namespace vitrum;
+
+namespace {
+
+/// The kernels with `right` replaced by `wrong` in one of their files.
+struct BrokenKernels {
+  TemporaryFolder folder;
+
+  BrokenKernels(const std::string& file, const std::string& right, const std::string& wrong) {
+    std::filesystem::copy(VITRUM_SOURCE_DIR "/kernels", folder.path(), std::filesystem::copy_options::recursive);
+    std::string text = file_bytes(folder / file);
+    const size_t at = text.find(right);
+    REQUIRE(at != std::string::npos);
+    put_file(folder / file, text.replace(at, right.size(), wrong));
+  }
+};
+
+void check_caught(const BrokenKernels& kernels, const std::string& group, const std::string& check) {
+  const Ended run = vitrum_run({"verify", "--only", group, "--kernels", kernels.folder.path()});
+  CAPTURE(run.out);
+  CAPTURE(run.err);
+  CHECK(run.code == 1);
+  CHECK(contains(run.out, "FAIL " + check + ": "));
+}
+
+}  // namespace
+
+TEST_CASE("verify passes, and its report holds what the table has") {
+  const TemporaryFolder folder;
+  const std::string json = folder / "v.json", html = folder / "v.html";
+  const Ended run = vitrum_run({"verify", "--only", "interface", "--only", "absorption", "--only", "slab-and-ball", "--report",
+                                json, "--report-html", html});
+  CHECK_MESSAGE(run.code == 0, run.out);
+  CHECK(contains(run.out, " 0 failed"));
+  const auto report = nlohmann::json::parse(file_bytes(json));
+  CHECK(report["mode"] == "quick");
+  CHECK(report["checks"].size() == 22);
+  for (const auto& check : report["checks"]) CHECK(check["passed"] == true);
+  CHECK(contains(file_bytes(html), "<svg"));
+}
+
+TEST_CASE("verify catches a wrong formula and names the check") {
+  check_caught({"fresnel.cl", "0.5f * (r * r) * fma(b, b, 1.0f)", "0.5f * (r * r) * fma(b, b, 1.0001f)"}, "interface",
+               "interface/reflectance");
+  check_caught({"fresnel.cl", "fma(y, 1.9875691500e-4f", "fma(y, 2.9875691500e-4f"}, "absorption",
+               "absorption/transmittance");
+  check_caught({"media.h", "top_medium(stack)].sigma_a;", "0].sigma_a;"}, "slab-and-ball", "slab-and-ball/absorbing ball");
+}
+
+TEST_CASE("verify refuses what it does not know") {
+  check_refused({"verify", "--only", "interfaces"}, "--only interfaces", "there is no such group", "did you mean 'interface'?");
+  check_refused({"verify", "--kernels", "/nowhere"}, "--kernels /nowhere", "there is no such folder", "name the folder");
+  CHECK(vitrum_run({"verify", "--quick", "--full"}).code == 2);
+}
