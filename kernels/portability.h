@@ -16,6 +16,12 @@
 #pragma OPENCL FP_CONTRACT OFF
 // static, so that no copy of each function is compiled for itself beside those that are inlined.
 #define FUNCTION static inline __attribute__((always_inline))
+// Fetches a line of memory that will soon be written, where a processor wants to be told.
+#if defined(__clang__) && defined(__x86_64__)
+#define PREFETCH_TO_WRITE(address) __builtin_prefetch((const void*)(ulong)(address), 1)
+#else
+#define PREFETCH_TO_WRITE(address)
+#endif
 // The body of a kernel. PoCL compiles a kernel three times over, but what it calls only once.
 #define BODY static __attribute__((noinline)) void
 // ulong8 passes between functions in another way with AVX-512 than without: no matter, since all of them are inlined.

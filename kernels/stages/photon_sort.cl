@@ -8,7 +8,11 @@
 BODY move_run(const uint stored, const uint run_length, const uint bucket_shift, __global const float* restrict fields,
               __global uint* restrict places, __global float8* restrict rows) {
   const uint stride = run_length + RUN_MARGIN;
+  __global const float* cells = fields + PHOTON_CELL * stride;
+  const uint ahead = 32;
   for (uint i = 0; i < stored; ++i) {
+    // The caches wait for a line in every other bucket.
+    if (i + ahead < stored) PREFETCH_TO_WRITE(rows + places[as_uint(cells[i + ahead]) >> bucket_shift]);
     const float8 photon = (float8)(fields[i], fields[stride + i], fields[2 * stride + i], fields[3 * stride + i],
                                    fields[4 * stride + i], fields[5 * stride + i], fields[6 * stride + i],
                                    fields[7 * stride + i]);
