@@ -158,11 +158,12 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   return alive ? outcome : (Uint)OUTCOME_ALIVE;
 }
 
-// Photons that wait for a packet of their own: field f of the k-th at [f][k].
+// Photons that wait for a packet of their own: field f of the k-th at [f][k]. A packet is emitted only while fewer than
+// WIDTH wait in either queue, and one that is taken puts no more back than it had; so less than 3 WIDTH wait in both.
 #define WAITING_FIELDS 14
 
 typedef struct {
-  float fields[WAITING_FIELDS][2 * WIDTH];
+  float fields[WAITING_FIELDS][3 * WIDTH];
   uint count;
 } Waiting;
 
