@@ -155,7 +155,7 @@ class PhotonChecks {
 }  // namespace
 
 std::vector<CheckResult> check_photons(const CheckContext& context) {
-  PhotonChecks checks(context, context.full ? 500'000 : 50'000);
+  PhotonChecks checks(context, context.full ? 2'000'000 : 50'000);
   constexpr double beam = std::numeric_limits<double>::infinity();
   for (const double index : {1.333, 1.5, 2.4}) {
     checks.run(index, {0.1, 1.0, 1e6}, beam);
