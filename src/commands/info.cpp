@@ -29,23 +29,6 @@ struct ShapeText {
   std::string operator()(const Mesh& m) const { return "mesh, " + std::to_string(m.triangles.size()) + " triangles"; }
 };
 
-struct LightText {
-  std::string operator()(const PointLight& l) const {
-    return "point at " + text_of(l.position) + " m, intensity " + text_of(l.intensity) + " W/sr";
-  }
-  std::string operator()(const DirectionalLight& l) const {
-    return "directional along " + text_of(l.direction) + ", irradiance " + text_of(l.irradiance) + " W/m2";
-  }
-  std::string operator()(const QuadLight& l) const { return area("quad at " + text_of(l.corner), l.radiance); }
-  std::string operator()(const DiscLight& l) const { return area("disc around " + text_of(l.centre), l.radiance); }
-  std::string operator()(const SphereLight& l) const { return area("sphere around " + text_of(l.centre), l.radiance); }
-  std::string operator()(const MeshLight&) const { return "emissive faces of the mesh"; }
-
-  static std::string area(const std::string& place, const Spectrum& radiance) {
-    return place + " m, radiance " + text_of(radiance) + " W/(m2 sr)";
-  }
-};
-
 /// Triangles of meshes and single ones.
 size_t triangle_count(const Scene& scene) {
   size_t count = 0;
@@ -93,7 +76,7 @@ void run_info(const SceneArguments& arguments) {
   }
   std::printf("%s\n", counted(scene.lights.size(), "light").c_str());
   for (const Light& light : scene.lights)
-    std::printf("  %-16s %s\n", light.name.c_str(), std::visit(LightText{}, light.emitter).c_str());
+    std::printf("  %-16s %s\n", light.name.c_str(), light_text(light).c_str());
   std::printf("media      %zu of 255\n", data.media.size() - 1);
   if (features.caustics)
     std::printf("photons    %llu, aimed at what refracts or mirrors: %s\n",

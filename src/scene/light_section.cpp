@@ -1,6 +1,7 @@
 // [light.NAME]
 
 #include <algorithm>
+#include <cstdio>
 
 #include "scene/sections.hpp"
 
@@ -65,7 +66,33 @@ decltype(Light::emitter) read_emitter(const TomlTable& table, double metres_per_
   return light;
 }
 
+std::string text_of(const glm::dvec3& v) {
+  char text[100];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", v.x, v.y, v.z);
+  return text;
+}
+
+/// What `vitrum info` says of a light.
+struct LightText {
+  std::string operator()(const PointLight& l) const {
+    return "point at " + text_of(l.position) + " m, intensity " + text_of(l.intensity) + " W/sr";
+  }
+  std::string operator()(const DirectionalLight& l) const {
+    return "directional along " + text_of(l.direction) + ", irradiance " + text_of(l.irradiance) + " W/m2";
+  }
+  std::string operator()(const QuadLight& l) const { return area("quad at " + text_of(l.corner), l.radiance); }
+  std::string operator()(const DiscLight& l) const { return area("disc around " + text_of(l.centre), l.radiance); }
+  std::string operator()(const SphereLight& l) const { return area("sphere around " + text_of(l.centre), l.radiance); }
+  std::string operator()(const MeshLight&) const { return "emissive faces of the mesh"; }
+
+  static std::string area(const std::string& place, const Spectrum& radiance) {
+    return place + " m, radiance " + text_of(radiance) + " W/(m2 sr)";
+  }
+};
+
 }  // namespace
+
+std::string light_text(const Light& light) { return std::visit(LightText{}, light.emitter); }
 
 std::vector<Light> read_lights(const TomlTable& root, const FileContext& context) {
   std::vector<Light> lights;

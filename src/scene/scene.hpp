@@ -155,6 +155,8 @@ struct Light {
   SourceLocation where;
   std::variant<PointLight, DirectionalLight, QuadLight, DiscLight, SphereLight, MeshLight> emitter;
 };
+/// Kind, place and emission in a line, for `vitrum info`.
+std::string light_text(const Light& light);
 
 // ---------------------------------------------------------------------------------------------- camera, film
 
