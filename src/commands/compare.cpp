@@ -8,6 +8,7 @@
 #include "commands/outputs.hpp"
 #include "commands/usage.hpp"
 #include "core/log.hpp"
+#include "core/printed.hpp"
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
 #include "film/false_colour.hpp"
@@ -51,11 +52,10 @@ void write_differences(const std::string& file, const NamedPicture& a, const Nam
   const Picture picture = false_colour_picture(differences, a.picture.width, a.picture.height, white);
   PictureLayer layer;
   for (const glm::vec3& pixel : picture.pixels) layer.values.insert(layer.values.end(), {pixel.x, pixel.y, pixel.z});
-  char text[64];
-  std::snprintf(text, sizeof text, "%.6g", white);
+  const std::string scale_text = printed("%.6g", white);
   write_picture(file, picture.width, picture.height, {layer}, DisplaySettings{},
-                {{"version", version()}, {"difference", a.file + " - " + b.file}, {"view", view}, {"scale", text}});
-  note("wrote " + file + ": |A - B| of the " + view + ", from 0 (black) to " + text + " (white, and all above)");
+                {{"version", version()}, {"difference", a.file + " - " + b.file}, {"view", view}, {"scale", scale_text}});
+  note("wrote " + file + ": |A - B| of the " + view + ", from 0 (black) to " + scale_text + " (white, and all above)");
 }
 
 int run_compare(const CompareArguments& arguments) {

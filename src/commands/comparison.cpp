@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "commands/usage.hpp"
 #include "core/error.hpp"
+#include "core/printed.hpp"
 #include "core/suggest.hpp"
 #include "core/version.hpp"
 
@@ -77,15 +77,6 @@ std::optional<ZTest> z_test_of(const NamedPicture& a, const NamedPicture& b, con
 double ratio(double a, double b) { return a == b ? 1.0 : a / b; }
 
 // ---------------------------------------------------------------------------------------------- text
-
-__attribute__((format(printf, 1, 2))) std::string printed(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 char channel_letter(const ViewComparison& view, int channel) { return (view.is_colour ? "RGB" : "XYZ")[channel]; }
 

@@ -3,6 +3,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/scene_arguments.hpp"
+#include "core/printed.hpp"
 #include "device/scene_data.hpp"
 #include "scene/features.hpp"
 #include "scene/textures.hpp"
@@ -10,17 +11,11 @@
 namespace vitrum {
 namespace {
 
-std::string text_of(const char* format, double a, double b = 0, double c = 0, double d = 0) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, a, b, c, d);
-  return text;
-}
-
-std::string text_of(const glm::dvec3& v) { return text_of("(%.6g, %.6g, %.6g)", v.x, v.y, v.z); }
+std::string text_of(const glm::dvec3& v) { return printed("(%.6g, %.6g, %.6g)", v.x, v.y, v.z); }
 
 struct ShapeText {
   std::string operator()(const Sphere& s) const {
-    return "sphere, centre " + text_of(s.centre) + " m, radius " + text_of("%.6g m", s.radius);
+    return "sphere, centre " + text_of(s.centre) + " m, radius " + printed("%.6g m", s.radius);
   }
   std::string operator()(const Plane& p) const { return "plane through " + text_of(p.point) + " m, normal " + text_of(p.normal); }
   std::string operator()(const Triangle& t) const {

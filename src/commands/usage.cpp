@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/printed.hpp"
 #include "core/suggest.hpp"
 
 namespace vitrum {
@@ -58,10 +59,8 @@ double real_number(const std::string& place, const std::string& text, double lea
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool is_number = fault == std::errc() && end == text.data() + text.size() && !std::isnan(number);
   if (!is_number || number < least || number > most) {
-    char range[80];
-    std::snprintf(range, sizeof range, "from %g to %g", least, most);
     throw Error({place}, is_number ? "this number is out of range" : "this is no number",
-                std::string("write a number ") + range + ", as in 0.001 or 1e-3");
+                printed("write a number from %g to %g, as in 0.001 or 1e-3", least, most));
   }
   return number;
 }

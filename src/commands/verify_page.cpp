@@ -32,12 +32,12 @@ std::string plot(const CheckResult& result) {
   const auto y = [&](double error) { return height - std::min(error / top, 1.0) * (height - 10); };
   std::string points;
   for (const auto& [x, error] : result.curve)
-    points += text("%.1f,%.1f ", (place(x) - low) / (high - low) * width, y(std::isfinite(error) ? error : top));
+    points += printed("%.1f,%.1f ", (place(x) - low) / (high - low) * width, y(std::isfinite(error) ? error : top));
   return "<figure><svg viewBox='0 0 640 180' width='640' height='180'>" +
-         text("<line x1='0' x2='640' y1='%.1f' y2='%.1f' stroke='#c33' stroke-dasharray='4'/>", y(result.bound),
+         printed("<line x1='0' x2='640' y1='%.1f' y2='%.1f' stroke='#c33' stroke-dasharray='4'/>", y(result.bound),
               y(result.bound)) +
          "<polyline fill='none' stroke='#246' points='" + points + "'/></svg><figcaption>" + escaped(result.name) +
-         text(": largest error [%s] from 0 to %.3g, dashed: the bound %.3g; %s from %.3g to %.3g%s</figcaption></figure>\n",
+         printed(": largest error [%s] from 0 to %.3g, dashed: the bound %.3g; %s from %.3g to %.3g%s</figcaption></figure>\n",
               result.unit.c_str(), top, result.bound, result.curve_input.c_str(), result.curve.front().first,
               result.curve.back().first, result.logarithmic ? ", logarithmic" : "");
 }
@@ -53,12 +53,12 @@ std::string verify_page(const VerifyRun& run) {
       "<h1>vitrum verify</h1>\n<p>" +
       escaped("vitrum " + std::string(version()) + ", " + run.device.name + ", " + run.device.platform + ", " +
               run.device.version + ", driver " + run.device.driver) +
-      text("; %s, %.1f s: %zu checks, %lld failed.</p>\n", run.full ? "full" : "quick", run.seconds, run.results.size(),
+      printed("; %s, %.1f s: %zu checks, %lld failed.</p>\n", run.full ? "full" : "quick", run.seconds, run.results.size(),
            static_cast<long long>(failed)) +
       "<table><tr><th>check<th>cases<th>worst error<th>bound<th>unit<th><th>where the truth comes from<th>worst input</tr>\n";
   for (const CheckResult& r : run.results)
     page += std::string(r.passed() ? "<tr>" : "<tr class='fail'>") + "<td>" + escaped(r.name) +
-            text("<td class='n'>%llu<td class='n'>%.3g<td class='n'>%.3g<td>", static_cast<unsigned long long>(r.cases), r.worst,
+            printed("<td class='n'>%llu<td class='n'>%.3g<td class='n'>%.3g<td>", static_cast<unsigned long long>(r.cases), r.worst,
                  r.bound) +
             escaped(r.unit) + "<td>" + (r.passed() ? "pass" : "FAIL") + "<td>" + escaped(r.truth) + "<td>" +
             escaped(r.worst_input) + "</tr>\n";

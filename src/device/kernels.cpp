@@ -43,29 +43,24 @@ void expand(const KernelFiles& files, const std::string& name, std::set<std::str
 
 }  // namespace
 
-std::string kernel_source(const KernelFiles& files, const std::string& name) {
-  std::set<std::string> seen;
-  std::string out = "#line 1 \"" + name + "\"\n";
-  expand(files, name, seen, out);
-  return out;
-}
-
-std::string stages_source(const KernelFiles& files, const std::vector<std::string>& stages) {
+std::string kernel_source(const KernelFiles& files, const std::vector<std::string>& names) {
   std::set<std::string> seen;
   std::string out;
-  for (const std::string& stage : stages) {
-    out += "#line 1 \"stages/" + stage + ".cl\"\n";
-    expand(files, "stages/" + stage + ".cl", seen, out);
+  for (const std::string& name : names) {
+    out += "#line 1 \"" + name + "\"\n";
+    expand(files, name, seen, out);
   }
   return out;
 }
 
 Kernels::Kernels(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
-                   const std::string& options) {
+                 const std::string& options) {
   const auto start = std::chrono::steady_clock::now();
   const std::string all_options = "-cl-std=CL1.2" + options;
   // One program: drivers read their built-in functions anew for each, and compile one after the other anyway.
-  const std::string source = stages_source(files, stages);
+  std::vector<std::string> names;
+  for (const std::string& stage : stages) names.push_back("stages/" + stage + ".cl");
+  const std::string source = kernel_source(files, names);
   if (!files.dump_folder.empty()) {
     std::error_code ignored;  // what matters is whether the file can be written
     std::filesystem::create_directories(files.dump_folder, ignored);

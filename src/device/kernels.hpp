@@ -14,18 +14,14 @@ struct KernelFiles {
   std::string dump_folder;      ///< what was compiled is written here (--dump-kernels DIR); "": nowhere
 };
 
-/// The text of kernels/NAME ("checks/fresnel.cl") with every #include "..." replaced by the file, each once. Throws
-/// Error for a file that is missing.
-std::string kernel_source(const KernelFiles& files, const std::string& name);
-
-/// The text of kernels/stages/NAME.cl of each stage, one after the other, with every #include "..." replaced by the
-/// file, each once. Throws Error for a file that is missing.
-std::string stages_source(const KernelFiles& files, const std::vector<std::string>& stages);
+/// The text of kernels/NAME ("checks/fresnel.cl") of each name, one after the other, with every #include "..." replaced
+/// by the file, each once. Throws Error for a file that is missing.
+std::string kernel_source(const KernelFiles& files, const std::vector<std::string>& names);
 
 /// The kernels of some stages, built for one device and one set of features.
 class Kernels {
  public:
-  /// Builds `stages` with `options`. Throws Error.
+  /// Builds kernels/stages/NAME.cl of each stage with `options`. Throws Error.
   Kernels(const Device& device, const KernelFiles& files, const std::vector<std::string>& stages,
           const std::string& options);
 

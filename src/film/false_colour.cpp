@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/printed.hpp"
 #include "film/display.hpp"
 
 namespace vitrum {
@@ -82,11 +83,7 @@ class Canvas {
   Picture picture_;
 };
 
-std::string label(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string label(double value) { return printed("%.3g", value); }
 
 /// 1, 2 or 5 times a power of ten, such that 2.5 to 6.25 of it make up `scale`.
 double tick_step(double scale) {

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-
 namespace vitrum {
 namespace {
 
@@ -27,6 +26,8 @@ constexpr uint32_t margin_rows = 16;           // a sorted bucket's strides, and
 uint32_t whole_units(uint32_t rows) { return (rows + rows_per_unit - 1) / rows_per_unit * rows_per_unit; }
 
 }  // namespace
+
+uint32_t pilot_size(uint64_t count) { return static_cast<uint32_t>(std::clamp<uint64_t>(count / 128, 1024, 65536)); }
 
 uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p) {
   const auto coordinate = [&grid](float x, uint32_t log2) {
@@ -129,7 +130,8 @@ void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected) {
   }
   used_rows_ = 0;
   const uint64_t all = std::accumulate(rows.begin(), rows.end(), uint64_t{0});
-  reserve_rows(all + all / 4);
+  const auto promised = static_cast<uint64_t>(largest_row_share * static_cast<double>(expected));
+  reserve_rows(std::max(all + margin_rows, promised) - margin_rows);
   room_.clear();
   for (uint32_t n : rows) room_.push_back(new_room(n));
 }

@@ -15,6 +15,11 @@ float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wa
 /// number `count` makes worthwhile.
 kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, float radius);
 
+/// Photons to look at, of a pass of `count`, before its grid is started: enough for each bucket to tell its room, so that
+/// this stays within `largest_row_share` rows a photon.
+uint32_t pilot_size(uint64_t count);
+inline constexpr double largest_row_share = 1.5;
+
 /// The cell of a place [m], as kernels/photon_map.h numbers them.
 uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p);
 

@@ -14,7 +14,8 @@
 namespace vitrum {
 namespace {
 
-constexpr uint32_t photons_per_launch = 1u << 16;  // what they leave fits a CPU's caches, until it is sorted
+// What the photons of a launch leave fits a CPU's caches, until it is sorted. No fewer than the largest pilot.
+constexpr uint32_t photons_per_launch = 1u << 16;
 
 Spectrum to_spectrum(const float* values) { return {values[0], values[1], values[2]}; }
 
@@ -133,7 +134,7 @@ struct PhotonPass::State {
 
   /// Chooses the grid for a pass of `count` photons by a few of each pair, which are not counted.
   void start_grid(uint32_t replicate, uint64_t count) {
-    const uint64_t pilot = std::clamp<uint64_t>(count / 64, 1024, 8192);
+    const uint64_t pilot = pilot_size(count);
     std::vector<std::vector<glm::vec3>> places;
     std::vector<double> stored;                 // of each pair in the pass
     for (uint32_t p = 0; p < pairs.size(); ++p) {
@@ -194,10 +195,10 @@ PhotonPass::PhotonPass(const KernelContext& context, uint64_t largest_pass)
 PhotonPass::~PhotonPass() = default;
 
 uint64_t PhotonPass::capacity(const Device& device) {
-  // A photon takes a row of one array, with some to spare; half of the memory may go to it.
-  constexpr double row = 1.5 * PHOTON_ROW * sizeof(float);
+  // A photon takes a row of one array, with some to spare; half of the memory may go to it. Offsets in it fit 32 bits.
+  constexpr double row = largest_row_share * PHOTON_ROW * sizeof(float);
   const double bytes = static_cast<double>(std::min(device.info().max_allocation, device.info().memory / 2));
-  return std::min<uint64_t>(static_cast<uint64_t>(bytes / row), 1u << 30);
+  return std::min<uint64_t>(static_cast<uint64_t>(bytes / row), 1u << 28);
 }
 
 void PhotonPass::run(uint32_t replicate, uint64_t before, uint64_t count,

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "core/printed.hpp"
 
 namespace vitrum {
 namespace {
@@ -111,11 +112,7 @@ std::string Features::build_options() const {
                         " -DCAUSTICS=" + (nearest_photons ? "CAUSTICS_NEAREST" : caustics ? "CAUSTICS_WITHIN" : "CAUSTICS_NONE") +
                         " -DCAMERA_STACK=" + std::to_string(std::max(32u, std::bit_ceil(max_depth + 1))) +
                         " -DLIGHT_KINDS=" + std::to_string(light_kinds);
-  if (constant_reflectance) {
-    char text[64];
-    std::snprintf(text, sizeof text, " -DCONSTANT_REFLECTANCE=%.9ef", *constant_reflectance);
-    options += text;
-  }
+  if (constant_reflectance) options += printed(" -DCONSTANT_REFLECTANCE=%.9ef", *constant_reflectance);
   return options;
 }
 

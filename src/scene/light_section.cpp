@@ -1,8 +1,8 @@
 // [light.NAME]
 
 #include <algorithm>
-#include <cstdio>
 
+#include "core/printed.hpp"
 #include "scene/sections.hpp"
 
 namespace vitrum {
@@ -66,11 +66,7 @@ decltype(Light::emitter) read_emitter(const TomlTable& table, double metres_per_
   return light;
 }
 
-std::string text_of(const glm::dvec3& v) {
-  char text[100];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", v.x, v.y, v.z);
-  return text;
-}
+std::string text_of(const glm::dvec3& v) { return printed("(%.6g, %.6g, %.6g)", v.x, v.y, v.z); }
 
 /// What `vitrum info` says of a light.
 struct LightText {

@@ -60,7 +60,7 @@ std::vector<CheckResult> check_absorption(const CheckContext& context) {
   });
   const auto path = [&](const Worst& worst) {
     const auto i = static_cast<uint32_t>(worst.at);
-    return text("sigma_a = %.9g, distance = %.9g", in(0, i), in(1, i));
+    return printed("sigma_a = %.9g, distance = %.9g", in(0, i), in(1, i));
   };
   rows.push_back({"absorption/transmittance", count, tally.left.error, promised, "relative",
                   "Bouguer: exp(-sigma_a s), long double", path(tally.left)});
@@ -68,7 +68,7 @@ std::vector<CheckResult> check_absorption(const CheckContext& context) {
   // The quotient: 2.5 ulp by OpenCL 1.2, 7.4, and half of one by the difference in front of it.
   rows.push_back({"absorption/sigma_a of rho_d", count, tally.sigma_a.error, rounds_as_host(context.device) ? 2.0 : 4.0,
                   "ulp", "1/rho_d - 1, 113 bits",
-                  text("rho_d = %.9g", in(2, static_cast<uint32_t>(tally.sigma_a.at)))});
+                  printed("rho_d = %.9g", in(2, static_cast<uint32_t>(tally.sigma_a.at)))});
 
   // A path in two pieces: s1 + s2 is exact in float where s2 is between a half and all of the sum (Sterbenz).
   const uint32_t pairs = context.full ? 1u << 22 : 1u << 17;
@@ -91,7 +91,7 @@ std::vector<CheckResult> check_absorption(const CheckContext& context) {
   const auto worst = static_cast<uint32_t>(3 * split.at);
   rows.push_back({"absorption/split path", split.cases, split.error, 3 * promised, "relative",
                   "exp(-a) exp(-b) = exp(-(a + b))",
-                  text("sigma_a = %.9g, %.9g m = %.9g m + %.9g m", pieces(0, worst), pieces(1, worst),
+                  printed("sigma_a = %.9g, %.9g m = %.9g m + %.9g m", pieces(0, worst), pieces(1, worst),
                        pieces(1, worst + 1), pieces(1, worst + 2))});
   return rows;
 }

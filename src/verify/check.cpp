@@ -1,8 +1,6 @@
 #include "verify/check.hpp"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 
 #include "verify/groups.hpp"
@@ -37,15 +35,6 @@ void Worst::merge(const Worst& later) {
     error = later.error;
     at = later.at;
   }
-}
-
-std::string text(const char* format, ...) {
-  char buffer[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
 }
 
 }  // namespace vitrum

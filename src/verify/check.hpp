@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/printed.hpp"
 #include "device/kernels.hpp"
 #include "device/opencl.hpp"
 
@@ -55,8 +56,5 @@ struct Worst {
   /// Takes up what another found in cases that come after all of this one's.
   void merge(const Worst& later);
 };
-
-/// Text by printf's rules, for the inputs that are told.
-std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 }  // namespace vitrum

@@ -45,7 +45,7 @@ std::vector<CheckResult> check_determinism(const CheckContext& context) {
       for (size_t i = 0; i < a.size(); ++i) {
         ++cases;
         if (std::bit_cast<uint64_t>(a[i]) == std::bit_cast<uint64_t>(b[i])) continue;
-        if (differing++ == 0) where = what + ", plane " + name + text(", value %zu: %.17g and %.17g", i, a[i], b[i]);
+        if (differing++ == 0) where = what + ", plane " + name + printed(", value %zu: %.17g and %.17g", i, a[i], b[i]);
       }
     }
     for (const Spectrum PhotonBalance::*power : {&PhotonBalance::shot, &PhotonBalance::stored, &PhotonBalance::absorbed,
@@ -58,7 +58,7 @@ std::vector<CheckResult> check_determinism(const CheckContext& context) {
   compare(render(scene, context.device, options), "run again");
   for (const unsigned group_size : {1u, 16u, 64u, 256u}) {
     Device device(context.device_choice, group_size);
-    compare(render(scene, device, options), text("groups of %u", group_size));
+    compare(render(scene, device, options), printed("groups of %u", group_size));
   }
   return {{"determinism/same bits", cases, static_cast<double>(differing), 0, "values",
            "the first run: again, and in groups of 1, 16, 64, 256", where}};

@@ -33,7 +33,7 @@ class FresnelKernel {
   FresnelKernel(const CheckContext& context, const char* kernel, size_t outputs)
       : device_(context.device),
         outputs_(outputs),
-        kernel_(context.device.build("checks/fresnel.cl", kernel_source(context.kernels, "checks/fresnel.cl"),
+        kernel_(context.device.build("checks/fresnel.cl", kernel_source(context.kernels, {"checks/fresnel.cl"}),
                                      "-cl-std=CL1.2"),
                 kernel) {}
 

@@ -64,7 +64,7 @@ void set_border(Fields& in, uint32_t i, Indices n, float cosine) {
 }
 
 std::string input_text(Indices n, float cosine) {
-  return text("n_i = %.17g, n_t = %.17g, cos_theta_i = %.9g", n.n_i, n.n_t, cosine);
+  return printed("n_i = %.17g, n_t = %.17g, cos_theta_i = %.9g", n.n_i, n.n_t, cosine);
 }
 
 /// How far the two floats are apart in ulp; 0 for the same bits.
@@ -282,7 +282,7 @@ void check_directions(FresnelKernel& border, const CheckContext& context, std::v
     const auto i = static_cast<uint32_t>(worst.at);
     const dvec3 d = vector_at(in, 5, i), up = vector_at(in, 8, i);
     rows.push_back({name, worst.cases, worst.error, bound, unit, truth,
-                    input_text(side(i), in(4, i)) + text(", direction (%.9g, %.9g, %.9g), normal (%.9g, %.9g, %.9g)", d.x, d.y,
+                    input_text(side(i), in(4, i)) + printed(", direction (%.9g, %.9g, %.9g), normal (%.9g, %.9g, %.9g)", d.x, d.y,
                                                          d.z, up.x, up.y, up.z)});
   };
   row("interface/refracted direction", tally.refracted, 3e-7, "rad", "Snell, 113 bits; leaving: traced back");

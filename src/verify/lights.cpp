@@ -97,7 +97,7 @@ CheckResult check_points(const CheckContext& context) {
       const dvec3 ray = forward + half * ((2.0 * (i % size) + 1) / size - 1) * right + half * (1 - (2.0 * (i / size) + 1) / size) * up;
       const dvec3 place = camera.eye - camera.eye.y / ray.y * ray;
       const double error = std::abs(pi * radiance[3 * static_cast<size_t>(i)] / irradiance(light, place) - 1);
-      if (error > worst.error) where = text("%s light: pixel (%d, %d) of %d", light == 0 ? "point" : "directional", i % size, i / size, size);
+      if (error > worst.error) where = printed("%s light: pixel (%d, %d) of %d", light == 0 ? "point" : "directional", i % size, i / size, size);
       worst.add(error, static_cast<uint64_t>(i));
     }
   }
@@ -133,7 +133,7 @@ std::vector<CheckResult> check_lights(const CheckContext& context) {
       const double beyond = std::max(std::abs(mean - 1) - rounding, std::isnan(mean) ? NAN : 0.0);
       const double t = beyond == 0.0 ? 0.0 : beyond / error;
       if (t > worst.error || worst.cases == 0)
-        where = text("%s light, at (%g, 0, %g): found %.7f +- %.1e of the truth", names[light], place.x, place.z, mean, error);
+        where = printed("%s light, at (%g, 0, %g): found %.7f +- %.1e of the truth", names[light], place.x, place.z, mean, error);
       worst.add(t, worst.cases);
       largest_error = std::max(largest_error, error);
     }

@@ -42,7 +42,7 @@ class Estimates {
     const double beyond = std::max(std::abs(mean - truth) - rounding, std::isnan(mean) ? NAN : 0.0);
     const double t = beyond == 0.0 ? 0.0 : beyond / error;
     if (t > worst_.error || worst_.cases == 0)
-      where_ = what + text(": found %.9f +- %.1e, truth %.9f", mean, error, truth);
+      where_ = what + printed(": found %.9f +- %.1e, truth %.9f", mean, error, truth);
     worst_.add(t, worst_.cases);
     largest_error_ = std::max(largest_error_, std::isnan(error) ? std::numeric_limits<double>::infinity() : error);
   }
@@ -90,7 +90,7 @@ class PhotonChecks {
   void run(double index, const Spectrum& sigma_a, double light_distance) {
     Scene scene = ball_over_plane(index, sigma_a, light_distance);
     scene.render.seed = runs_++;
-    const std::string what = text("n = %g, light at %g m", index, light_distance);
+    const std::string what = printed("n = %g, light at %g m", index, light_distance);
     PhotonRun photon_run(scene, context_.device, count_, context_.kernels);
     PhotonBalance before;
     constexpr double radii[] = {0.1, 0.2, 0.5, 1.0};
@@ -111,14 +111,14 @@ class PhotonChecks {
         const double ends = power(&PhotonBalance::stored) + power(&PhotonBalance::absorbed) + power(&PhotonBalance::direct) +
                             power(&PhotonBalance::lost) + power(&PhotonBalance::cut);
         const double error = std::abs(ends / shot - 1);
-        if (error > balance_.error) where_ = what + text(", channel %d, replicate %u", c, replicate);
+        if (error > balance_.error) where_ = what + printed(", channel %d, replicate %u", c, replicate);
         balance_.add(error, balance_.cases);
       }
       before = after;
     }
     for (int c = 0; c < 3; ++c) {
       const reference::BallOnAxis ball{1.0, index, sigma_a[c], 2.0, light_distance};
-      const std::string channel = what + text(", sigma_a = %g", sigma_a[c]);
+      const std::string channel = what + printed(", sigma_a = %g", sigma_a[c]);
       // Where it is opaque, all that is not reflected is absorbed: closed form.
       if (sigma_a[c] > 1e3 && std::isinf(light_distance))
         reflected_.add(absorbed[c], 1 - hemispherical_reflectance(index), channel);
@@ -126,7 +126,7 @@ class PhotonChecks {
         absorbed_.add(absorbed[c], reference::absorbed_flux(ball), channel);
       for (int k = 0; k < 4; ++k)
         encircled_.add(within[k][c], reference::encircled_flux(ball, radii[k], reference::Orders::all),
-                       channel + text(", r < %g m", radii[k]));
+                       channel + printed(", r < %g m", radii[k]));
       encircled_.add(stored[c],
                      reference::encircled_flux(ball, std::numeric_limits<double>::infinity(), reference::Orders::all),
                      channel + ", all of the plane");

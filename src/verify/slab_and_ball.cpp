@@ -74,7 +74,7 @@ Worst compared(const CheckContext& context, const Scene& scene, const Truth& tru
 
 std::string place(const Scene& scene, const Worst& worst, const std::string& what) {
   const size_t pixel = worst.at / 3, width = static_cast<size_t>(scene.film.width);
-  return what + text(": pixel (%zu, %zu) of %zu, channel %zu", pixel % width, pixel / width, width,
+  return what + printed(": pixel (%zu, %zu) of %zu, channel %zu", pixel % width, pixel / width, width,
                      static_cast<size_t>(worst.at % 3));
 }
 
@@ -147,7 +147,7 @@ CheckResult check_furnace(const CheckContext& context, int size) {
     // As rendered by default, where much is cut: all that is missing must be told.
     scene.render.max_depth = 20;
     scene.render.min_weight = 1e-4;
-    row.add(scene, compared(context, scene, [](const dvec3&, size_t) { return Range{1.0, 1.0}; }), text("n = %g", n));
+    row.add(scene, compared(context, scene, [](const dvec3&, size_t) { return Range{1.0, 1.0}; }), printed("n = %g", n));
   }
   return row.result("slab-and-ball/white furnace", "radiance 1 all around gives 1 (clear ball)");
 }
@@ -159,7 +159,7 @@ CheckResult check_ball(const CheckContext& context, int size) {
     const auto truth = [&](const dvec3& direction, size_t c) {
       return shells_seen({{1.0, n, absorption[static_cast<int>(c)]}}, scene.camera.eye, direction);
     };
-    row.add(scene, compared(context, scene, truth), text("n = %g, sigma_a = .1, .5, 2", n));
+    row.add(scene, compared(context, scene, truth), printed("n = %g, sigma_a = .1, .5, 2", n));
   }
   return row.result("slab-and-ball/absorbing ball", "R + T^2 tau/(1 - R tau), tau = exp(-2 sigma a cos_t)");
 }
@@ -185,7 +185,7 @@ CheckResult check_nested(const CheckContext& context, int size) {
       if (n.priority == 0) shells.push_back({0.6, n.inner, inside[channel]});
       return shells_seen(shells, scene.camera.eye, direction);
     };
-    row.add(scene, compared(context, scene, truth), text("n = %g around %g, priority %d", n.outer, n.inner, n.priority));
+    row.add(scene, compared(context, scene, truth), printed("n = %g around %g, priority %d", n.outer, n.inner, n.priority));
   }
   return row.result("slab-and-ball/nested balls", "the same, shell in shell; Schmidt and Budge 2002");
 }
@@ -206,7 +206,7 @@ CheckResult check_inside(const CheckContext& context, int size) {
       const double value = n * n * f.T * reference::transmittance(sigma_a, way) / (1 - around);
       return Range{value, value};
     };
-    row.add(scene, compared(context, scene, truth), text("n = %g", n));
+    row.add(scene, compared(context, scene, truth), printed("n = %g", n));
   }
   return row.result("slab-and-ball/eye in the ball", "n^2 T tau_1/(1 - R tau), radiance in the glass");
 }
@@ -238,7 +238,7 @@ CheckResult check_slab(const CheckContext& context, int size) {
         }
         return range;
       };
-      row.add(scene, compared(context, scene, truth), text("n = %g, sigma_a = %g, %g, %g", n, sigma_a.x, sigma_a.y, sigma_a.z));
+      row.add(scene, compared(context, scene, truth), printed("n = %g, sigma_a = %g, %g, %g", n, sigma_a.x, sigma_a.y, sigma_a.z));
     }
   return row.result("slab-and-ball/slab", "R + T^2 R tau^2/(1 - R^2 tau^2), T^2 tau/(1 - R^2 tau^2)");
 }

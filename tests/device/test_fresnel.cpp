@@ -55,7 +55,7 @@ class Comparison {
         expected_(size_t{batch} * outputs.size()) {
     kernel_ = cl::Kernel(device.build("checks/fresnel.cl",
                                       "#undef WIDTH\n#define WIDTH " + std::to_string(width) + "\n" +
-                                          kernel_source({}, "checks/fresnel.cl"),
+                                          kernel_source({}, {"checks/fresnel.cl"}),
                                       "-cl-std=CL1.2"),
                          kernel);
   }

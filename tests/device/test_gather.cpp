@@ -222,6 +222,25 @@ TEST_CASE("photons exactly at the border") {
   CHECK(within == doctest::Approx(2 * weights / circle(0.5)).epsilon(1e-6));
 }
 
+TEST_CASE("room for a pass is within what capacity counts on, however photons spread over the buckets") {
+  prepare_opencl(0);
+  Device device;
+  Scene scene;
+  const SceneData data;
+  const DeviceScene device_scene;
+  const Features features;
+  const Kernels kernels(device, {}, {"photon_sort"}, features.build_options());
+  Random random;
+  for (const uint64_t count : {500'000u, 5'000'000u, 9'000'000u}) {
+    CAPTURE(count);
+    PhotonGrid grid({device, kernels, scene, data, device_scene, features});
+    std::vector<vec3> sample;
+    for (uint32_t i = 0; i < pilot_size(count); ++i) sample.push_back(random.in_box(vec3(-1, 0, -1), vec3(1, 0, 1)));
+    grid.start(sample, count);
+    CHECK(static_cast<double>(grid.map().photons.size()) <= largest_row_share * PHOTON_ROW * static_cast<double>(count));
+  }
+}
+
 TEST_CASE("gathering does not depend on the size of groups") {
   Random random;
   const std::vector<cl_float8> photons = many_photons(random);
