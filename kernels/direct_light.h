@@ -7,6 +7,7 @@
 #include "media.h"
 #include "surface.h"
 #if HAS_MESH
+#include "mesh.h"
 #include "tree.h"
 #endif
 
@@ -107,13 +108,14 @@ FUNCTION Vec3 direct_light(const Scene scene, const uint light_index, __global c
   RayPacket shadow;
   shadow.origin = surface->position;
   shadow.direction = in.direction;
-  shadow.t_min = leaving_t_min(surface, in.direction);
+  shadow.t_min = surface->error;
   shadow.t_max = in.distance - larger((Float)light->clearance, 4e-7f * in.distance);
   shadow.t_max = in.distance == INFINITY ? INFINITY : shadow.t_max;
   Mask lit = wanted & (exact_any_hit(scene, shadow, surface->from) == 0);
 #if HAS_MESH
+  const Uint from = leaving(surface, surface->entering);
   FOR_LANES(lane, lit) {
-    const Ray ray = lane_ray(&shadow, lane);
+    const Ray ray = mesh_ray(scene, &shadow, LANE(from, uint, lane), lane);
     if (tree_any(&ray, scene.nodes, scene.leaves)) SET_LANE(lit, int, lane, 0);
   }
 #endif

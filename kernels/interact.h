@@ -20,8 +20,8 @@ typedef struct {
 } Encounter;
 
 // What tells groups apart, in one number: material, side, and with a single medium also whether the rays are in it.
-FUNCTION Uint encounter_keys(const SurfacePacket* surface, const Uint stack, const Mask entering) {
-  const Uint side = surface->material << 1 | (entering ? (Uint)1 : (Uint)0);
+FUNCTION Uint encounter_keys(const SurfacePacket* surface, const Uint stack) {
+  const Uint side = surface->material << 1 | (surface->entering ? (Uint)1 : (Uint)0);
 #if HAS_MEDIA_STACK
   return side;
 #else

@@ -8,18 +8,8 @@
 typedef struct {
   Vec3 origin;                 // [m], the unshifted points that the rays leave: path lengths are measured from them
   Vec3 direction;              // unit length
-  Float t_min;                 // [m], hits at t <= t_min belong to the surface that a ray leaves
+  Float t_min;                 // [m], exact shapes at t <= t_min belong to the surface that a ray leaves
   Float t_max;                 // [m], hits at t >= t_max are not looked for
 } RayPacket;
-
-// One ray of a packet, for the tree.
-FUNCTION Ray lane_ray(const RayPacket* packet, uint lane) {
-  Ray ray;
-  ray.origin = LANE3(packet->origin, lane);
-  ray.direction = LANE3(packet->direction, lane);
-  ray.t_min = LANE(packet->t_min, float, lane);
-  ray.t_max = LANE(packet->t_max, float, lane);
-  return ray;
-}
 
 #endif

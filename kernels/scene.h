@@ -23,7 +23,7 @@ typedef struct {
 #if HAS_MESH
   __global const TreeNode* nodes;
   __global const TreeLeaf* leaves;
-  __global const MeshData* meshes;
+  __global const BodyData* bodies;
   __global const TriangleData* triangles;
   __global const float* positions;
   __global const float* normals;
@@ -38,10 +38,10 @@ typedef struct {
 
 #if HAS_MESH
 #define MESH_PARAMETERS                                                                                              \
-  , __global const TreeNode *nodes, __global const TreeLeaf *leaves, __global const MeshData *meshes,                \
+  , __global const TreeNode *nodes, __global const TreeLeaf *leaves, __global const BodyData *bodies,                \
       __global const TriangleData *triangles, __global const float *positions, __global const float *normals,        \
       __global const float *texcoords, __global const LightFace *faces
-#define MESH_MEMBERS , nodes, leaves, meshes, triangles, positions, normals, texcoords, faces
+#define MESH_MEMBERS , nodes, leaves, bodies, triangles, positions, normals, texcoords, faces
 #else
 #define MESH_PARAMETERS
 #define MESH_MEMBERS

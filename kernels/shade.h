@@ -10,7 +10,7 @@ typedef struct {
   RayPacket rays;
   Vec3 weight;                 // R, T and transmittance so far
   Uint media;                  // stack
-  Uint from;                   // exact shape that a ray leaves, or NO_INDEX
+  Uint from;                   // what a ray leaves (surface.h)
   Uint path;                   // random bits
   Mask active;
   uint depth;                  // surfaces met before
@@ -35,7 +35,6 @@ FUNCTION Shading shade(const Scene scene, const CameraLimits limits, const Camer
                        const SurfacePacket* surface) {
   const Vec3 direction = camera->rays.direction;
   const Vec3 weight = camera->weight;
-  const Mask entering = dot3(direction, surface->geometric_normal) < 0.0f;
   const Vec3 zero = make_vec3(0.0f, 0.0f, 0.0f);
   const int goes_deeper = camera->depth + 1 < limits.max_depth;
 
@@ -55,7 +54,7 @@ FUNCTION Shading shade(const Scene scene, const CameraLimits limits, const Camer
   s.reflected.media = 0;
   s.refracted = s.reflected;
 
-  const Uint keys = encounter_keys(surface, camera->media, entering);
+  const Uint keys = encounter_keys(surface, camera->media);
   Mask todo = camera->active;
   while (ANY(todo)) {
     const Encounter e = next_encounter(scene, todo, surface, keys, camera->media);

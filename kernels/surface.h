@@ -6,12 +6,17 @@
 #include "scene.h"
 #include "texture.h"
 
-// Rounding of a point put back on its surface, relative to the largest coordinate at hand: 12 roundings of 2^-24 in the
-// worst case of a barycentric sum and a projection, doubled for the next ray's own intersection.
+// Rounding of a point put back on its surface, relative to the largest coordinate m at hand. On a triangle, with
+// u = 2^-24: b - a and c - a are off by 2 u m, the two fma by u m each, so a coordinate by 4 u m and the point by
+// sqrt(3) times as much. On an exact shape: 12 u m by a division or root, a product and a sum. Twice that, for what the
+// next ray's own intersection loses.
 #define SURFACE_ROUNDING 1.4e-6f
 
-// A ray leaves a mesh after error / cosine [m], the cosine to the facet's normal, and at grazing angles no later than this.
-#define LEAST_COSINE 0.03f
+// What a ray leaves, in one number: an exact shape's index, or a triangle's among those of all meshes and the side to
+// which it leaves, or NO_INDEX.
+#define FROM_MESH 0x80000000u
+#define FROM_FRONT 0x40000000u
+#define FROM_TRIANGLE 0x3fffffffu
 
 typedef struct {
   Float t;                     // [m], INFINITY: nothing is met
@@ -21,14 +26,16 @@ typedef struct {
   Vec3 shading_normal;         // unit length, on the same side
 #endif
   Uint material;
-  Uint from;                   // exact shape, for the rays that leave; NO_INDEX on a mesh
+  Mask entering;               // the front is met
+  Uint from;                   // what the surface is, for the rays that leave it; without FROM_FRONT
 #if HAS_TEXTURES
   Float u, v;                  // texture coordinates; NaN: none
 #endif
 #if HAS_CONTACTS
   Uint contacts;               // borders in contact behind this one (contacts.h)
 #endif
-  Float error;                 // [m]: bound of the distance between the position and the true surface
+  Float error;                 // [m]: bound of the distance between the position and the true surface; exact shapes
+                               // that a ray meets sooner belong to the place that it leaves
 } SurfacePacket;
 
 FUNCTION Vec3 shading_normal(const SurfacePacket* surface) {
@@ -58,14 +65,13 @@ FUNCTION Vec3 diffuse_reflectance(const Scene scene, __global const MaterialData
   return rho_d;
 }
 
-// Where hits of a ray that leaves along `direction` begin. On an exact shape the shape itself is told by `from`, so
-// the bound serves its neighbours only; on a mesh the ray must get clear of the facet and of those that share its edge.
-FUNCTION Float leaving_t_min(const SurfacePacket* surface, const Vec3 direction) {
+// What rays leave that go on before the surface (`front`) or behind it. The side is that of the event, not of a dot
+// product, whose sign may be lost at grazing angles.
+FUNCTION Uint leaving(const SurfacePacket* surface, const Mask front) {
 #if HAS_MESH
-  const Float cosine = fabs(dot3(direction, surface->geometric_normal));
-  return surface->from == NO_INDEX ? surface->error / larger(cosine, LEAST_COSINE) : surface->error;
+  return ((surface->from & FROM_MESH) != 0) & front ? surface->from | FROM_FRONT : surface->from;
 #else
-  return surface->error;
+  return surface->from;
 #endif
 }
 

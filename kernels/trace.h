@@ -7,14 +7,14 @@
 #include "trace_mesh.h"
 #endif
 
-// `active`: the lanes that matter; others come out as anything. `textured`: texture coordinates are wanted.
+// `active`: the lanes that matter; others come out as anything. `textured`: texture coordinates are wanted. `media`: the
+// stacks of the rays, which are mended where a ray slipped past an edge of a mesh (trace_mesh.h).
 FUNCTION SurfacePacket trace(const Scene scene, const RayPacket packet, const Uint from, const Mask active,
-                             const int textured) {
+                             const int textured, Uint* media) {
   SurfacePacket surface = trace_exact(scene, packet, from, textured);
 #if HAS_MESH
   FOR_LANES(lane, active) {
-    const Ray ray = lane_ray(&packet, lane);
-    trace_mesh(scene, &ray, lane, &surface);
+    trace_mesh(scene, &packet, LANE(from, uint, lane), lane, &surface, media);
   }
 #endif
   return surface;

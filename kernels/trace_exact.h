@@ -80,6 +80,7 @@ FUNCTION SurfacePacket trace_exact(const Scene scene, const RayPacket packet, co
   surface.shading_normal = normal;
 #endif
   surface.material = material;
+  surface.entering = dot3(packet.direction, normal) < 0.0f;
   surface.from = shape;
 #if HAS_TEXTURES
   surface.u = tex_u;

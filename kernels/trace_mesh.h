@@ -3,28 +3,25 @@
 #define VITRUM_TRACE_MESH_H
 
 #include "contacts.h"
-#include "surface.h"
+#include "media.h"
+#include "mesh.h"
 #include "tree.h"
 
-FUNCTION __global const TriangleData* triangle_of(const Scene scene, const Hit hit) {
-  const uint mesh = hit.shape - (scene.n_spheres + scene.n_flats);
-  return &scene.triangles[scene.meshes[mesh].first_triangle + hit.primitive];
-}
-
-FUNCTION float3 triangle_normal(const Scene scene, __global const TriangleData* triangle) {
-  const float3 a = vload3(triangle->position[0], scene.positions);
-  return normalize(cross(vload3(triangle->position[1], scene.positions) - a,
-                         vload3(triangle->position[2], scene.positions) - a));
+// Bound of the distance [m] between a place that is computed on the triangle and its plane.
+FUNCTION float triangle_error(const float3 a, const float3 b, const float3 c) {
+  const float3 largest = fmax(fmax(fabs(a), fabs(b)), fabs(c));
+  return SURFACE_ROUNDING * fmax(largest.x, fmax(largest.y, largest.z));
 }
 
 // Puts what a triangle is at the place of a hit into one lane.
-FUNCTION void set_mesh_surface(const Scene scene, const Ray* ray, const Hit hit, uint lane, SurfacePacket* surface) {
-  __global const TriangleData* triangle = triangle_of(scene, hit);
-  const float3 a = vload3(triangle->position[0], scene.positions);
-  const float3 b = vload3(triangle->position[1], scene.positions);
-  const float3 c = vload3(triangle->position[2], scene.positions);
+FUNCTION void set_mesh_surface(const Scene scene, const Hit hit, uint lane, SurfacePacket* surface) {
+  __global const TriangleData* triangle = &scene.triangles[hit.primitive];
+  const float3 a = corner_of(scene, triangle, 0);
+  const float3 b = corner_of(scene, triangle, 1);
+  const float3 c = corner_of(scene, triangle, 2);
   const float w = 1.0f - hit.u - hit.v;
-  const float3 position = fma((float3)(w), a, fma((float3)(hit.u), b, hit.v * c));
+  // Near its plane however far the ray has come.
+  const float3 position = fma((float3)(hit.v), c - a, fma((float3)(hit.u), b - a, a));
   const float3 geometric = triangle_normal(scene, triangle);
   float3 shading = geometric;
   if (triangle->normal[0] != NO_INDEX) {
@@ -33,14 +30,14 @@ FUNCTION void set_mesh_surface(const Scene scene, const Ray* ray, const Hit hit,
                              hit.v * vload3(triangle->normal[2], scene.normals)));
     if (dot(n, geometric) > 1e-6f) shading = normalize(n);
   }
-  const float3 largest = fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(ray->origin)));
   SET_LANE(surface->t, float, lane, hit.t);
   set_lane3(&surface->position, lane, position);
   set_lane3(&surface->geometric_normal, lane, geometric);
   set_lane3(&surface->shading_normal, lane, shading);
   SET_LANE(surface->material, uint, lane, triangle->material);
-  SET_LANE(surface->error, float, lane, SURFACE_ROUNDING * fmax(largest.x, fmax(largest.y, largest.z)));
-  SET_LANE(surface->from, uint, lane, NO_INDEX);
+  SET_LANE(surface->error, float, lane, triangle_error(a, b, c));
+  SET_LANE(surface->entering, int, lane, hit.front ? -1 : 0);
+  SET_LANE(surface->from, uint, lane, FROM_MESH | hit.primitive);
 #if HAS_TEXTURES
   float u = NAN;
   float v = NAN;
@@ -58,30 +55,39 @@ FUNCTION void set_mesh_surface(const Scene scene, const Ray* ray, const Hit hit,
 
 #if HAS_CONTACTS
 
+// How far off each other [m] two surfaces may be found that a ray from `origin` meets at one place, which is within `error`
+// of the first: by what the triangle test makes of the way from there (tree.h).
+FUNCTION float contact_error(const float error, const float3 origin) {
+  const float3 size = fabs(origin);
+  return error + SURFACE_ROUNDING * fmax(size.x, fmax(size.y, size.z));
+}
+
 // What lies within the rounding of the transparent surface in `lane` belongs to the same event: replaces it by an opaque
 // surface, or notes the further borders.
 FUNCTION void find_contacts(const Scene scene, const Ray* ray, const Hit first, uint lane, SurfacePacket* surface) {
-  const float3 normal = LANE3(surface->geometric_normal, lane);
-  const float along = dot(ray->direction, normal);
-  const float band = LANE(surface->error, float, lane) / fmax(fabs(along), LEAST_COSINE);
+  const float3 position = LANE3(surface->position, lane);
+  const float error = contact_error(LANE(surface->error, float, lane), ray->origin);
+  const float cosine = fabs(dot(ray->direction, LANE3(surface->geometric_normal, lane)));
   Hit near[TREE_MAX_HITS];
-  const uint n = tree_hits_within(ray, scene.nodes, scene.leaves, first.t, first.t + band, near);
+  const uint n = tree_hits_within(ray, scene.nodes, scene.leaves, first.t, first.t + error / cosine, near);
   uint contacts = 0;
   uint places = 0;
   uint seen_shape[MAX_CONTACTS + 1];
   uint seen_entering[MAX_CONTACTS + 1];
   uint seen = 1;
   seen_shape[0] = first.shape;
-  seen_entering[0] = along < 0.0f;
+  seen_entering[0] = LANE(surface->entering, int, lane) != 0;
   for (uint k = 0; k < n; ++k) {
-    if (near[k].t <= ray->t_min) continue;
-    __global const TriangleData* triangle = triangle_of(scene, near[k]);
+    __global const TriangleData* triangle = &scene.triangles[near[k].primitive];
+    const int touches = tree_near_plane(position, corner_of(scene, triangle, 0), corner_of(scene, triangle, 1),
+                                        corner_of(scene, triangle, 2), error);
+    if (!touches) continue;
     if (scene.materials[triangle->material].surface != SURFACE_DIELECTRIC) {
-      set_mesh_surface(scene, ray, near[k], lane, surface);
+      set_mesh_surface(scene, near[k], lane, surface);
       return;
     }
     // Triangles that share an edge are one border.
-    const uint entering = dot(ray->direction, triangle_normal(scene, triangle)) < 0.0f;
+    const uint entering = near[k].front;
     int known = 0;
     for (uint s = 0; s < seen; ++s) known |= seen_shape[s] == near[k].shape && seen_entering[s] == entering;
     if (known || places == MAX_CONTACTS) continue;
@@ -94,8 +100,24 @@ FUNCTION void find_contacts(const Scene scene, const Ray* ray, const Hit first, 
 
 #endif
 
+#if HAS_DIELECTRIC
+
+// A ray that grazes an edge of a transparent mesh may have slipped past it: it went in, but from where rounding has put it
+// the mesh lies behind. It shows when a ray inside of a closed mesh meets its front or nothing, or one outside its back.
+// Then the stack of media is mended: the ray is on the other side.
+FUNCTION uint mended_media(const Scene scene, const Ray* ray, const Hit hit, const uint media) {
+  const int astray = hit.t < INFINITY ? hit.shape == ray->shape && hit.front != ray->front : !ray->front;
+  if (!astray || !scene.bodies[ray->shape - (scene.n_spheres + scene.n_flats)].closed) return media;
+  const uint medium = scene.materials[scene.triangles[ray->primitive].material].medium;
+  return ray->front ? entered(scene, media, medium) : left(media, medium);
+}
+
+#endif
+
 // Replaces the exact shape in `lane` by a triangle that comes before it.
-FUNCTION void trace_mesh(const Scene scene, const Ray* ray, uint lane, SurfacePacket* surface) {
+FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const uint from, uint lane, SurfacePacket* surface,
+                         Uint* media) {
+  const Ray ray = mesh_ray(scene, packet, from, lane);
   Hit hit;
   hit.t = LANE(surface->t, float, lane);
   hit.shape = LANE(surface->from, uint, lane);
@@ -105,21 +127,25 @@ FUNCTION void trace_mesh(const Scene scene, const Ray* ray, uint lane, SurfacePa
   const int exact_is_opaque =
       scene.materials[LANE(surface->material, uint, lane)].surface != SURFACE_DIELECTRIC;
 #endif
-  const int found = tree_closest(ray, scene.nodes, scene.leaves, &hit);
+  const int found = tree_closest(&ray, scene.nodes, scene.leaves, &hit);
+#if HAS_DIELECTRIC
+  if (ray.shape != NO_INDEX) SET_LANE(*media, uint, lane, mended_media(scene, &ray, hit, LANE(*media, uint, lane)));
+#endif
 #if HAS_CONTACTS
-  if (hit.shape == NO_INDEX || (!found && exact_is_opaque)) return;
-  const int opaque = found && scene.materials[triangle_of(scene, hit)->material].surface != SURFACE_DIELECTRIC;
-  if (found && !opaque && exact_is_opaque) {
+  int dielectric = !exact_is_opaque;
+  if (found) {
+    __global const TriangleData* triangle = &scene.triangles[hit.primitive];
+    dielectric = scene.materials[triangle->material].surface == SURFACE_DIELECTRIC;
+    const float error = contact_error(triangle_error(corner_of(scene, triangle, 0), corner_of(scene, triangle, 1),
+                                                     corner_of(scene, triangle, 2)), ray.origin);
     // An opaque exact shape in contact with the glass wins.
-    const float3 size = fmax(fabs(fma((float3)(hit.t), ray->direction, ray->origin)), fabs(ray->origin));
-    const float cosine = fabs(dot(ray->direction, triangle_normal(scene, triangle_of(scene, hit))));
-    const float band = SURFACE_ROUNDING * fmax(size.x, fmax(size.y, size.z)) / fmax(cosine, LEAST_COSINE);
-    if (t_exact <= hit.t + band) return;
+    const float gap = (t_exact - hit.t) * fabs(dot(ray.direction, LANE3(surface->geometric_normal, lane)));
+    if (dielectric && exact_is_opaque && gap <= error) return;
+    set_mesh_surface(scene, hit, lane, surface);
   }
-  if (found) set_mesh_surface(scene, ray, hit, lane, surface);
-  if (!opaque) find_contacts(scene, ray, hit, lane, surface);
+  if (dielectric && hit.shape != NO_INDEX) find_contacts(scene, &ray, hit, lane, surface);
 #else
-  if (found) set_mesh_surface(scene, ray, hit, lane, surface);
+  if (found) set_mesh_surface(scene, hit, lane, surface);
 #endif
 }
 

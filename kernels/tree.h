@@ -102,8 +102,10 @@ static float4 tree_cross(const float4 a, const float4 b, const float4 c, const f
   return fma(a, b, -cd) + fma(-c, d, cd);
 }
 
-// Which triangles of a leaf the ray's line meets, at which t, with the weights of corners b and c; meaningless elsewhere.
-static int4 tree_triangles(const TreeRay* r, __global const TreeLeaf* leaf, float4* t, float4* u, float4* v) {
+// Which triangles of a leaf the ray's line meets, at which t, with the weights of corners b and c, and whether it meets
+// their fronts; meaningless elsewhere.
+static int4 tree_triangles(const TreeRay* r, __global const TreeLeaf* leaf, float4* t, float4* u, float4* v,
+                           int4* front) {
   __global const float* corners = &leaf->corners[0][0][0];
   const float4 az = vload4(r->kz, corners) - r->origin_z;
   const float4 bz = vload4(r->kz + 3, corners) - r->origin_z;
@@ -119,13 +121,16 @@ static int4 tree_triangles(const TreeRay* r, __global const TreeLeaf* leaf, floa
   const float4 weight_b = tree_cross(ax, cy, ay, cx);
   const float4 weight_c = tree_cross(bx, ay, by, ax);
   const float4 sum = weight_a + weight_b + weight_c;
-  const int4 front = (weight_a >= 0.0f) & (weight_b >= 0.0f) & (weight_c >= 0.0f);
-  const int4 back = (weight_a <= 0.0f) & (weight_b <= 0.0f) & (weight_c <= 0.0f);
-  const int4 met = (front | back) & (sum != 0.0f);
+  const int4 positive = (weight_a >= 0.0f) & (weight_b >= 0.0f) & (weight_c >= 0.0f);
+  const int4 negative = (weight_a <= 0.0f) & (weight_b <= 0.0f) & (weight_c <= 0.0f);
+  const int4 met = (positive | negative) & (sum != 0.0f);
   if (!tree_mask4(met)) {
     *t = *u = *v = 0.0f;
+    *front = 0;
     return met;
   }
+  // The sum is -dot(direction, cross(b - a, c - a)) / d_kz.
+  *front = r->inverse_kz > 0.0f ? positive : negative;
   *u = weight_b / sum;
   *v = weight_c / sum;
   *t = r->inverse_kz * fma(weight_a / sum, az, fma(*u, bz, *v * cz));
@@ -182,7 +187,38 @@ static bool tree_before(const Hit* a, const Hit* b) {
          (a->t == b->t && (a->shape < b->shape || (a->shape == b->shape && a->primitive < b->primitive)));
 }
 
-static Hit tree_hit(__global const TreeLeaf* leaf, const uint lane, const float4 t, const float4 u, const float4 v) {
+static float3 tree_corner(__global const TreeLeaf* leaf, const uint corner, const uint lane) {
+  return (float3)(leaf->corners[corner][0][lane], leaf->corners[corner][1][lane], leaf->corners[corner][2][lane]);
+}
+
+// Is `p` within `error` [m] of the triangle's plane? The second term is what roundings do to the normal of a needle:
+// differences of corners, products and sums take 8 u of the lengths.
+static bool tree_near_plane(const float3 p, const float3 a, const float3 b, const float3 c, const float error) {
+  const float3 ab = b - a, ac = c - a, ap = p - a, normal = cross(ab, ac);
+  return fabs(dot(normal, ap)) <= error * length(normal) + 0x1p-21f * length(ab) * length(ac) * length(ap);
+}
+
+// Does the triangle belong to the surface that the ray leaves, so that it is not met? The one that it leaves does. Of the
+// same body, those do which it starts from within rounding and would see from the wrong side: a ray that has gone inside
+// does not enter again through the next facet. Of others, where shapes touch, all that it starts from: they have been
+// crossed together with the one it leaves (contacts.h).
+static bool tree_left_behind(const Ray* ray, __global const TreeLeaf* leaf, const uint lane, const uint front) {
+  if (leaf->shape[lane] == ray->shape) {
+    if (leaf->primitive[lane] == ray->primitive) return true;
+    if (front == ray->front) return false;
+  } else {
+#if HAS_CONTACTS
+    if (ray->error == 0.0f) return false;
+#else
+    return false;
+#endif
+  }
+  return tree_near_plane(ray->origin, tree_corner(leaf, 0, lane), tree_corner(leaf, 1, lane), tree_corner(leaf, 2, lane),
+                         ray->error);
+}
+
+static Hit tree_hit(__global const TreeLeaf* leaf, const uint lane, const float4 t, const float4 u, const float4 v,
+                    const uint fronts) {
   float lanes[3][TREE_LEAF_WIDTH];
   vstore4(t, 0, lanes[0]);
   vstore4(u, 0, lanes[1]);
@@ -193,6 +229,7 @@ static Hit tree_hit(__global const TreeLeaf* leaf, const uint lane, const float4
   hit.primitive = leaf->primitive[lane];
   hit.u = lanes[1][lane];
   hit.v = lanes[2][lane];
+  hit.front = fronts >> lane & 1u;
   return hit;
 }
 
@@ -211,10 +248,12 @@ static bool tree_closest(const Ray* ray, __global const TreeNode* nodes, __globa
   while ((next = tree_next_leaf(&r, nodes, ray->t_min, best.t, stack, &top)) != TREE_EMPTY) {
     __global const TreeLeaf* leaf = leaves + next;
     float4 t, u, v;
-    const int4 met = tree_triangles(&r, leaf, &t, &u, &v);
+    int4 front;
+    const int4 met = tree_triangles(&r, leaf, &t, &u, &v, &front);
     for (uint mask = tree_mask4(met & (t > ray->t_min) & (t <= best.t)); mask; mask &= mask - 1) {
-      const Hit candidate = tree_hit(leaf, tree_lowest(mask), t, u, v);
-      if (!tree_before(&candidate, &best)) continue;
+      const uint lane = tree_lowest(mask);
+      const Hit candidate = tree_hit(leaf, lane, t, u, v, tree_mask4(front));
+      if (!tree_before(&candidate, &best) || tree_left_behind(ray, leaf, lane, candidate.front)) continue;
       best = candidate;
       found = true;
     }
@@ -231,8 +270,12 @@ static bool tree_any(const Ray* ray, __global const TreeNode* nodes, __global co
   uint top = 1, next;
   while ((next = tree_next_leaf(&r, nodes, ray->t_min, ray->t_max, stack, &top)) != TREE_EMPTY) {
     float4 t, u, v;
-    const int4 met = tree_triangles(&r, leaves + next, &t, &u, &v);
-    if (tree_mask4(met & (t > ray->t_min) & (t < ray->t_max))) return true;
+    int4 front;
+    const int4 met = tree_triangles(&r, leaves + next, &t, &u, &v, &front);
+    for (uint mask = tree_mask4(met & (t > ray->t_min) & (t < ray->t_max)); mask; mask &= mask - 1) {
+      const uint lane = tree_lowest(mask);
+      if (!tree_left_behind(ray, leaves + next, lane, tree_mask4(front) >> lane & 1u)) return true;
+    }
   }
   return false;
 }
@@ -240,7 +283,7 @@ static bool tree_any(const Ray* ray, __global const TreeNode* nodes, __global co
 #define TREE_MAX_HITS 4
 
 // The first TREE_MAX_HITS triangles at t_first <= t <= t_last, t_first >= 0, in order; returns how many there are in
-// `hits`. For surfaces in contact; the ray's own t_min and t_max do not matter.
+// `hits`. For surfaces in contact; the ray's own t_min and t_max and what it leaves do not matter.
 static uint tree_hits_within(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
                              const float t_first, const float t_last, Hit hits[TREE_MAX_HITS]) {
   const TreeRay r = tree_ray(ray);
@@ -252,9 +295,10 @@ static uint tree_hits_within(const Ray* ray, __global const TreeNode* nodes, __g
   while ((next = tree_next_leaf(&r, nodes, t_first, t_end, stack, &top)) != TREE_EMPTY) {
     __global const TreeLeaf* leaf = leaves + next;
     float4 t, u, v;
-    const int4 met = tree_triangles(&r, leaf, &t, &u, &v);
+    int4 front;
+    const int4 met = tree_triangles(&r, leaf, &t, &u, &v, &front);
     for (uint mask = tree_mask4(met & (t >= t_first) & (t <= t_end)); mask; mask &= mask - 1) {
-      const Hit candidate = tree_hit(leaf, tree_lowest(mask), t, u, v);
+      const Hit candidate = tree_hit(leaf, tree_lowest(mask), t, u, v, tree_mask4(front));
       uint place = count;
       for (; place > 0 && tree_before(&candidate, &hits[place - 1]); --place)
         if (place < TREE_MAX_HITS) hits[place] = hits[place - 1];

@@ -29,17 +29,19 @@ typedef struct {
   uint material;
 } FlatData;
 
-// A mesh's range in the buffers of triangles; a hit's `primitive` counts within the mesh.
+// The triangles of a mesh that have one material; to rays a shape of its own.
 typedef struct {
-  uint first_triangle;
-} MeshData;
+  uint closed;                 // 1: of a dielectric, and each edge has faces on both sides: who enters it leaves it
+} BodyData;
 
-// A triangle's corners as indices into the buffers of positions, normals and texture coordinates.
+// A triangle's corners as indices into the buffers of positions, normals and texture coordinates. The tree's `primitive`
+// is its index among the triangles of all meshes.
 typedef struct {
   uint position[3];
   uint normal[3];              // NO_INDEX in [0]: flat
   uint texcoord[3];            // NO_INDEX in [0]: none
   uint material;
+  uint shape;                  // after the exact shapes: the body's index
 } TriangleData;
 
 #define SURFACE_UNLIT 0u

@@ -29,11 +29,7 @@ const char* const kernel_text = R"(
 __kernel void closest(__global const TreeNode* nodes, __global const TreeLeaf* leaves, __global const float* rays,
                       __global float* t, __global uint* primitive) {
   const size_t i = get_global_id(0);
-  Ray ray;
-  ray.origin = vload3(2 * i, rays);
-  ray.direction = vload3(2 * i + 1, rays);
-  ray.t_min = 1e-4f;
-  ray.t_max = INFINITY;
+  const Ray ray = free_ray(vload3(2 * i, rays), vload3(2 * i + 1, rays), 1e-4f, INFINITY);
   Hit hit;
   hit.t = INFINITY;
   hit.shape = hit.primitive = TREE_EMPTY;

@@ -39,14 +39,14 @@ FUNCTION CameraRays camera_rays(__global const CameraData* camera, __global cons
   return rays;
 }
 
-// The rest of what `child` needs to leave the surfaces that `parent` met. `side` tells its random numbers from those of
-// its sibling (every use hashes them again).
-FUNCTION void start_from(const SurfacePacket* surface, const CameraRays* parent, const uint side, CameraRays* child) {
+// The rest of what `child` needs to leave the surfaces that `parent` met, `crossing` them or not. That also tells its
+// random numbers from those of its sibling (every use hashes them again).
+FUNCTION void start_from(const SurfacePacket* surface, const CameraRays* parent, const uint crossing, CameraRays* child) {
   child->rays.origin = surface->position;
-  child->rays.t_min = leaving_t_min(surface, child->rays.direction);
+  child->rays.t_min = surface->error;
   child->rays.t_max = INFINITY;
-  child->from = surface->from;
-  child->path = parent->path * 0x9e3779b1u + (0x7f4a7c15u + side);
+  child->from = leaving(surface, crossing ? surface->entering == 0 : surface->entering);
+  child->path = parent->path * 0x9e3779b1u + (0x7f4a7c15u + crossing);
   child->depth = parent->depth + 1;
 }
 
@@ -105,8 +105,8 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
     waiting[0].active = lanes_below(i, last_pixel);
     uint n_waiting = 1;
     while (n_waiting > 0) {
-      const CameraRays camera = waiting[--n_waiting];
-      const SurfacePacket surface = trace(scene, camera.rays, camera.from, camera.active, 1);
+      CameraRays camera = waiting[--n_waiting];
+      const SurfacePacket surface = trace(scene, camera.rays, camera.from, camera.active, 1, &camera.media);
       Shading shading = shade(scene, limits, &camera, &surface);
       Vec3 radiance = shading.shown;
 #if HAS_DIRECT_LIGHT

@@ -4,37 +4,9 @@
 // A work-item minds one run: WIDTH photons at a time, in registers from the light to where they end. The few that go
 // other ways than most wait until they fill a packet of their own, so that lanes rarely idle.
 #include "emission.h"
-#include "interact.h"
-#include "outcome.h"
 #include "photon_map.h"
+#include "photon_step.h"
 #include "trace.h"
-
-typedef struct {
-  Vec3 origin, direction;
-  Vec3 power;                  // [W]
-  Float t_min;
-  Uint stack, from, path;
-  Uint depth;                  // surfaces met
-  Mask alive;
-} Photons;
-
-// A sum of powers with what its roundings lost (Kahan), in each lane.
-typedef struct {
-  Vec3 sum, rest;
-} Tally;
-
-FUNCTION void add_compensated(Float* sum, Float* rest, const Float value) {
-  const Float corrected = value + *rest;
-  const Float next = *sum + corrected;
-  *rest = corrected - (next - *sum);
-  *sum = next;
-}
-
-FUNCTION void add_power(Tally* tally, const Mask which, const Vec3 power) {
-  add_compensated(&tally->sum.x, &tally->rest.x, which ? power.x : 0.0f);
-  add_compensated(&tally->sum.y, &tally->rest.y, which ? power.y : 0.0f);
-  add_compensated(&tally->sum.z, &tally->rest.z, which ? power.z : 0.0f);
-}
 
 FUNCTION float least_of_lanes(const Float values) {
   float least = LANE(values, float, 0);
@@ -88,74 +60,6 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   photons.depth = 0;
   photons.alive = (Mask)-1;
   return photons;
-}
-
-// What the surface does to the living photons: their outcome, and with that ALIVE their next ray. Adds what the media
-// before it took to `absorbed`.
-FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, Photons* photons,
-                       Tally* absorbed) {
-  const Mask alive = photons->alive;
-  const Vec3 direction = photons->direction;
-  const Uint stack = photons->stack;
-  const Mask entering = dot3(direction, surface->geometric_normal) < 0.0f;
-  Uint outcome = OUTCOME_LOST;
-  Vec3 next = direction;
-
-  // [photon]
-  const Uint keys = encounter_keys(surface, stack, entering);
-  Mask todo = alive & (surface->t < INFINITY);
-  while (ANY(todo)) {
-    const Encounter e = next_encounter(scene, todo, surface, keys, stack);
-    todo &= e.here == 0;
-#if HAS_ABSORPTION
-    // What the medium takes is counted by itself, not as a difference.
-    if (top_medium(e.stack) != 0) {
-      Vec3 left_over, taken;
-      media_attenuation(scene, e.stack, surface->t, &left_over, &taken);
-      add_power(absorbed, e.here, multiply3(photons->power, taken));
-      photons->power = select3(e.here, multiply3(photons->power, left_over), photons->power);
-    }
-#endif
-    if (e.material->surface == SURFACE_MIRROR) {
-      next = select3(e.here, mirrored(e, surface, direction), next);
-      outcome = e.here ? OUTCOME_ALIVE : outcome;
-#if HAS_DIELECTRIC
-    } else if (e.material->surface == SURFACE_DIELECTRIC) {
-      const Split split = split_at_dielectric(scene, e, surface, direction);
-      // One random number serves the first two choices: what a choice leaves of it is uniform again. Later ones are
-      // drawn anew, before its bits run out.
-      const Mask first_two = photons->depth < 2;
-      Float u = unit_float(photons->path);
-      if (ANY(e.here & (first_two == 0)))
-        u = first_two ? u : unit_float(hash_pair(photons->path, photons->depth));
-      const Mask reflect = u < split.R;
-      next = select3(e.here, split_chosen(&split, reflect, direction), next);
-      photons->stack =
-          e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : photons->stack;
-      const Float rest = (reflect ? u : u - split.R) / (reflect ? split.R : 1.0f - split.R);
-      // The low bits, which no choice has used, serve for the hash.
-      const Uint rest_bits = AS_UINT(TO_INT(smaller(rest, 0.99999994f) * 16777216.0f)) << 8 | (photons->path & 0xffu);
-      photons->path = (e.here & first_two) ? rest_bits : photons->path;
-      outcome = e.here ? OUTCOME_ALIVE : outcome;
-#endif
-    } else {
-      const int diffuse = e.material->surface == SURFACE_OPAQUE && is_diffuse(e.material);
-      const Uint caustic = photons->depth > 0 ? (Uint)OUTCOME_STORED : (Uint)OUTCOME_DIRECT;
-      outcome = e.here ? (diffuse ? caustic : (Uint)OUTCOME_ABSORBED) : outcome;
-    }
-  }
-  const Mask spent = (photons->depth + 1 >= max_depth) | (max_channel(photons->power) <= 0.0f);
-  outcome = (outcome == OUTCOME_ALIVE) & spent ? OUTCOME_CUT : outcome;
-  // [/photon]
-
-  photons->depth += alive ? (Uint)1 : (Uint)0;
-  photons->origin = surface->position;
-  photons->t_min = leaving_t_min(surface, next);
-  photons->from = surface->from;
-  // Those that end keep the direction that they came from.
-  photons->direction = next;
-  photons->alive = alive & (outcome == OUTCOME_ALIVE);
-  return alive ? outcome : (Uint)OUTCOME_ALIVE;
 }
 
 // Photons that wait for a packet of their own: field f of the k-th at [f][k]. A packet is emitted only while fewer than
@@ -272,7 +176,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
       packet.direction = photons.direction;
       packet.t_min = photons.t_min;
       packet.t_max = INFINITY;
-      const SurfacePacket surface = trace(scene, packet, photons.from, photons.alive, 0);
+      const SurfacePacket surface = trace(scene, packet, photons.from, photons.alive, 0, &photons.stack);
       const Vec3 arrived = photons.direction;
       const Uint outcome = interact(scene, &surface, max_depth, &photons, &power[OUTCOME_ABSORBED]);
       for (uint k = OUTCOME_ALIVE + 1; k < OUTCOMES; ++k) {

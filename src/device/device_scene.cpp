@@ -17,7 +17,7 @@ DeviceScene upload(Device& device, const SceneData& data, const Features& featur
   if (features.mesh) {
     d.nodes = device.upload(tree->nodes, "tree");
     d.leaves = device.upload(tree->leaves, "tree");
-    d.meshes = device.upload(data.meshes, "meshes");
+    d.bodies = device.upload(data.bodies, "meshes");
     d.triangles = device.upload(data.triangles, "meshes");
     d.positions = device.upload(data.positions, "meshes");
     d.normals = device.upload(data.normals, "meshes");
@@ -40,7 +40,7 @@ unsigned DeviceScene::set_arguments(cl::Kernel& kernel) const {
   vitrum::set_arguments(kernel, 0, spheres, flats, materials, media, interfaces, lights, n_spheres, n_flats, n_media);
   unsigned next = 9;
   if (has_mesh) {
-    vitrum::set_arguments(kernel, next, nodes, leaves, meshes, triangles, positions, normals, texcoords, faces);
+    vitrum::set_arguments(kernel, next, nodes, leaves, bodies, triangles, positions, normals, texcoords, faces);
     next += 8;
   }
   if (has_textures) {

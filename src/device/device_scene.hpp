@@ -18,7 +18,7 @@ struct DeviceScene {
   bool has_mesh = false;
   Buffer<kernel::TreeNode> nodes;
   Buffer<kernel::TreeLeaf> leaves;
-  Buffer<kernel::MeshData> meshes;
+  Buffer<kernel::BodyData> bodies;
   Buffer<kernel::TriangleData> triangles;
   Buffer<float> positions, normals, texcoords;
   Buffer<kernel::LightFace> faces;

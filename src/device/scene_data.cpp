@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "device/interface.hpp"
+#include "scene/bodies.hpp"
 #include "scene/media.hpp"
 
 namespace vitrum {
@@ -158,7 +159,11 @@ class Builder {
     for (const glm::vec3& p : mesh.positions) data_.positions.insert(data_.positions.end(), {p.x, p.y, p.z});
     for (const glm::vec3& n : mesh.normals) data_.normals.insert(data_.normals.end(), {n.x, n.y, n.z});
     for (const glm::vec2& t : mesh.texcoords) data_.texcoords.insert(data_.texcoords.end(), {t.x, t.y});
-    const uint32_t number = static_cast<uint32_t>(data_.meshes.size());
+    std::map<uint32_t, uint32_t> body_of;  // by material
+    for (const Body& body : bodies_of(mesh)) {
+      body_of[body.material] = static_cast<uint32_t>(data_.bodies.size());
+      data_.bodies.push_back({body.closed && scene_.materials[body.material].surface == Surface::dielectric});
+    }
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
       kernel::TriangleData t{};
       const bool smooth = !mesh.normal_indices.empty() && mesh.normal_indices[i].x != none;
@@ -169,10 +174,10 @@ class Builder {
         t.texcoord[k] = mapped ? first_texcoord + mesh.texcoord_indices[i][k] : NO_INDEX;
       }
       t.material = mesh.materials[i] + 1;
+      t.shape = body_of.at(mesh.materials[i]);
       data_.triangles.push_back(t);
     }
-    data_.meshes.push_back({first});
-    mesh_number_[&shape - scene_.shapes.data()] = number;
+    first_triangle_[&shape - scene_.shapes.data()] = first;
   }
 
   void add_lights() {
@@ -258,7 +263,7 @@ class Builder {
   /// Walker's alias table over area times luminous radiance (Vose 1991). Returns a place on the light.
   glm::dvec3 add_mesh_light(kernel::LightData& d, const MeshLight& light) {
     const Mesh& mesh = std::get<Mesh>(scene_.shapes[light.shape].geometry);
-    const uint32_t first_triangle = data_.meshes[mesh_number_.at(light.shape)].first_triangle;
+    const uint32_t first_triangle = first_triangle_.at(light.shape);
     d.first_face = static_cast<uint32_t>(data_.faces.size());
     std::vector<double> weights;
     glm::dvec3 place(0.0);
@@ -315,7 +320,12 @@ class Builder {
     const uint32_t spheres = static_cast<uint32_t>(data_.spheres.size());
     const uint32_t exact = spheres + static_cast<uint32_t>(data_.flats.size());
     data_.tree_triangles = tree_triangles(scene_);
-    for (TreeTriangle& t : data_.tree_triangles) t.shape = exact + mesh_number_.at(t.shape);
+    assert(data_.tree_triangles.size() == data_.triangles.size());
+    for (uint32_t i = 0; i < data_.triangles.size(); ++i) {
+      data_.triangles[i].shape += exact;
+      data_.tree_triangles[i].shape = data_.triangles[i].shape;
+      data_.tree_triangles[i].primitive = i;
+    }
     for (kernel::LightData& light : data_.lights)
       if (light.kind == LIGHT_QUAD || light.kind == LIGHT_DISC) light.shape += spheres;
   }
@@ -423,7 +433,7 @@ class Builder {
   const Features& features_;
   SceneData data_;
   std::vector<uint32_t> medium_of_;                ///< of each material of the scene
-  std::map<std::ptrdiff_t, uint32_t> mesh_number_; ///< by shape
+  std::map<std::ptrdiff_t, uint32_t> first_triangle_;  ///< of meshes, by shape
 };
 
 }  // namespace

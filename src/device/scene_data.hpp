@@ -11,14 +11,14 @@
 namespace vitrum {
 
 /// Everything that lies in the scene's buffers (kernels/types.h), and the few numbers that go with it.
-/// Shapes are numbered spheres first, then flats, then meshes. Material 0 is the background's.
+/// Shapes are numbered spheres first, then flats, then bodies: the faces of a mesh that have one material. Material 0 is the background's.
 struct SceneData {
   std::vector<kernel::SphereData> spheres;
   std::vector<kernel::FlatData> flats;
-  std::vector<kernel::MeshData> meshes;
+  std::vector<kernel::BodyData> bodies;
   std::vector<kernel::TriangleData> triangles;
   std::vector<float> positions, normals, texcoords;
-  std::vector<TreeTriangle> tree_triangles;
+  std::vector<TreeTriangle> tree_triangles;       ///< in the order of `triangles`; `primitive` counts over all meshes
   std::vector<kernel::MaterialData> materials;
   std::vector<kernel::MediumData> media;
   std::vector<kernel::InterfaceData> interfaces;  ///< [from * media.size() + into]

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/printed.hpp"
+#include "scene/bodies.hpp"
 
 namespace vitrum {
 namespace {
@@ -21,9 +22,9 @@ struct Box {
   }
 };
 
-/// Box around a shape, with room for rounding. An infinite plane has the part of its box that `near` meets: itself if it
+/// Box around a shape, or around a mesh's faces of one material, with room for rounding. An infinite plane has the part of its box that `near` meets: itself if it
 /// cuts `near`, nothing otherwise.
-Box box_of(const Shape& shape, const Box* near) {
+Box box_of(const Shape& shape, uint32_t material, const Box* near) {
   Box box;
   if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
     box.add(sphere->centre - sphere->radius);
@@ -31,8 +32,8 @@ Box box_of(const Shape& shape, const Box* near) {
   } else if (const auto* triangle = std::get_if<Triangle>(&shape.geometry)) {
     for (const glm::dvec3& p : {triangle->a, triangle->b, triangle->c}) box.add(p);
   } else if (const auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
-    for (const glm::uvec3& t : mesh->triangles)
-      for (int k = 0; k < 3; ++k) box.add(mesh->positions[t[k]]);
+    for (size_t i = 0; i < mesh->triangles.size(); ++i)
+      for (int k = 0; k < 3 && mesh->materials[i] == material; ++k) box.add(mesh->positions[mesh->triangles[i][k]]);
   } else if (near) {
     const Plane& plane = std::get<Plane>(shape.geometry);
     const glm::dvec3 half = 0.5 * (near->high - near->low);
@@ -45,18 +46,31 @@ Box box_of(const Shape& shape, const Box* near) {
   return box;
 }
 
-/// Does the box of a transparent mesh meet that of another shape? Parts of one mesh do not count as touching.
-bool may_touch(const Scene& scene) {
-  for (const Shape& shape : scene.shapes) {
-    const Mesh* mesh = std::get_if<Mesh>(&shape.geometry);
-    if (!mesh || std::none_of(mesh->materials.begin(), mesh->materials.end(), [&](uint32_t m) {
-          return scene.materials[m].surface == Surface::dielectric;
-        }))
-      continue;
-    const Box box = box_of(shape, nullptr);
-    for (const Shape& other : scene.shapes) {
-      if (&other == &shape) continue;
-      const Box b = box_of(other, &box);
+/// A shape that rays tell from others: an exact one, or the faces of a mesh that have one material.
+struct Piece {
+  const Shape* shape;
+  uint32_t material;
+  bool is_mesh;
+};
+
+std::vector<Piece> pieces_of(const Scene& scene) {
+  std::vector<Piece> pieces;
+  for (const Shape& shape : scene.shapes)
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry))
+      for (const Body& body : bodies_of(*mesh)) pieces.push_back({&shape, body.material, true});
+    else
+      pieces.push_back({&shape, shape.material, false});
+  return pieces;
+}
+
+/// Does the box of a transparent piece of a mesh meet that of another piece?
+bool may_touch(const Scene& scene, const std::vector<Piece>& pieces) {
+  for (const Piece& piece : pieces) {
+    if (!piece.is_mesh || scene.materials[piece.material].surface != Surface::dielectric) continue;
+    const Box box = box_of(*piece.shape, piece.material, nullptr);
+    for (const Piece& other : pieces) {
+      if (&other == &piece) continue;
+      const Box b = box_of(*other.shape, other.material, &box);
       if (glm::all(glm::lessThanEqual(box.low, b.high)) && glm::all(glm::lessThanEqual(b.low, box.high))) return true;
     }
   }
@@ -69,18 +83,12 @@ Features scene_features(const Scene& scene) {
   Features f;
   // Only materials that some surface has count.
   std::vector<bool> used(scene.materials.size(), false);
-  size_t media_shapes = 0;
-  for (const Shape& shape : scene.shapes) {
-    if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
-      f.mesh = true;
-      for (uint32_t material : mesh->materials) used[material] = true;
-      media_shapes += std::any_of(mesh->materials.begin(), mesh->materials.end(), [&](uint32_t m) {
-        return scene.materials[m].surface == Surface::dielectric;
-      });
-    } else {
-      used[shape.material] = true;
-      media_shapes += scene.materials[shape.material].surface == Surface::dielectric;
-    }
+  const std::vector<Piece> pieces = pieces_of(scene);
+  size_t media_bodies = 0;
+  for (const Piece& piece : pieces) {
+    used[piece.material] = true;
+    f.mesh |= piece.is_mesh;
+    media_bodies += scene.materials[piece.material].surface == Surface::dielectric;
   }
   bool specular_surface = false;
   for (size_t i = 0; i < scene.materials.size(); ++i) {
@@ -93,8 +101,8 @@ Features scene_features(const Scene& scene) {
     specular_surface |= m.surface == Surface::dielectric || m.surface == Surface::mirror;
   }
   // With a single body of one medium a ray is inside it or it is not.
-  f.media_stack = media_shapes > 1;
-  f.contacts = f.mesh && f.dielectric && may_touch(scene);
+  f.media_stack = media_bodies > 1;
+  f.contacts = f.mesh && f.dielectric && may_touch(scene, pieces);
   for (const Light& light : scene.lights) f.light_kinds |= 1u << light.emitter.index();
   f.lights = scene.render.lights && !scene.lights.empty();
   f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;

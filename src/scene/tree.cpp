@@ -211,9 +211,9 @@ std::vector<TreeTriangle> tree_triangles(const Scene& scene) {
 
 Tree build_tree(std::span<const TreeTriangle> triangles, unsigned threads) {
   const auto start = std::chrono::steady_clock::now();
-  if (triangles.size() >= TREE_LEAF_BIT)
-    throw Error({}, std::to_string(triangles.size()) + " triangles are more than the tree can number",
-                "use meshes with fewer than 2^31 triangles");
+  if (triangles.size() >= TREE_MAX_TRIANGLES)
+    throw Error({}, std::to_string(triangles.size()) + " triangles are more than a ray can name",
+                "use meshes with fewer than 2^30 triangles");
   Tree tree;
   try {
     std::vector<RTCBuildPrimitive> primitives = build_primitives(triangles);

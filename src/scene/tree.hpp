@@ -43,7 +43,7 @@ struct Tree {
 std::vector<TreeTriangle> tree_triangles(const Scene& scene);
 
 /// Builds the tree with `threads` threads, 0: all. The same triangles give the same bits whatever their number.
-/// Throws Error where there are 2^31 triangles or more, or memory runs out.
+/// Throws Error where there are TREE_MAX_TRIANGLES or more, or memory runs out.
 Tree build_tree(std::span<const TreeTriangle> triangles, unsigned threads = 0);
 
 }  // namespace vitrum

@@ -12,6 +12,7 @@ const std::vector<CheckGroup>& check_groups() {
       {"interface", "Fresnel and Snell, against quadruple precision", check_interface},
       {"absorption", "Bouguer's law", check_absorption},
       {"slab-and-ball", "pictures of a slab, a ball and nested balls, against closed forms", check_slab_and_ball},
+      {"geometry", "rays at edges and corners of meshes, and photons that go through them", check_geometry},
       {"photons", "balance of power, and caustics of a ball by quadrature", check_photons},
       {"lights", "irradiance under each kind of light", check_lights},
       {"determinism", "the same bits again, and with other group sizes", check_determinism},

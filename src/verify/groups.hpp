@@ -8,6 +8,7 @@ namespace vitrum {
 std::vector<CheckResult> check_interface(const CheckContext& context);
 std::vector<CheckResult> check_absorption(const CheckContext& context);
 std::vector<CheckResult> check_slab_and_ball(const CheckContext& context);
+std::vector<CheckResult> check_geometry(const CheckContext& context);
 std::vector<CheckResult> check_photons(const CheckContext& context);
 std::vector<CheckResult> check_lights(const CheckContext& context);
 std::vector<CheckResult> check_determinism(const CheckContext& context);

@@ -250,7 +250,7 @@ TEST_CASE("a render outlives its process for pictures, which outlives signals of
   process.send(SIGSTOP);
   for (const int signal_number : {SIGINT, SIGQUIT, SIGHUP}) ::kill(first, signal_number);
   wait_a_little();
-  CHECK(state_of(first).letter == 'S');
+  CHECK(std::string("SRD").find(state_of(first).letter) != std::string::npos);  // it lives
   ::kill(first, SIGKILL);
   CHECK(ends(first));
   wait_a_little();  // for its last thread, with which its end of the socket goes

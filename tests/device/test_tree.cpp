@@ -26,6 +26,7 @@ struct HitData {
   float t = INFINITY;
   uint32_t shape = TREE_EMPTY, primitive = TREE_EMPTY;
   float u = 0, v = 0;
+  uint32_t front = 0;
   bool operator==(const HitData&) const = default;
 };
 
@@ -46,10 +47,11 @@ uint brute(const Ray* ray, __global const TreeLeaf* leaves, uint n_leaves, int c
   uint count = 0;
   for (uint n = 0; n < n_leaves; ++n) {
     float4 t, u, v;
-    const int4 met = tree_triangles(&r, leaves + n, &t, &u, &v);
+    int4 front;
+    const int4 met = tree_triangles(&r, leaves + n, &t, &u, &v, &front);
     for (uint i = 0; i < TREE_LEAF_WIDTH; ++i) {
       if (!(tree_mask4(met) >> i & 1)) continue;
-      const Hit hit = tree_hit(leaves + n, i, t, u, v);
+      const Hit hit = tree_hit(leaves + n, i, t, u, v, tree_mask4(front));
       if (closed ? hit.t < ray->t_min || hit.t > ray->t_max : hit.t <= ray->t_min || hit.t >= ray->t_max) continue;
       uint place = count < TREE_MAX_HITS ? count++ : TREE_MAX_HITS;
       for (; place > 0 && tree_before(&hit, &hits[place - 1]); --place)
@@ -68,15 +70,12 @@ typedef struct {
 __kernel void trace(__global const TreeNode* nodes, __global const TreeLeaf* leaves, uint n_leaves,
                     __global const float* rays, __global Result* results) {
   const size_t i = get_global_id(0);
-  Ray ray;
-  ray.origin = vload3(0, rays + 8 * i);
-  ray.direction = vload3(0, rays + 8 * i + 3);
-  ray.t_min = rays[8 * i + 6];
-  ray.t_max = rays[8 * i + 7];
+  const Ray ray = free_ray(vload3(0, rays + 8 * i), vload3(0, rays + 8 * i + 3), rays[8 * i + 6], rays[8 * i + 7]);
   Hit none, hits[TREE_MAX_HITS];
   none.t = INFINITY;
   none.shape = none.primitive = TREE_EMPTY;
   none.u = none.v = 0.0f;
+  none.front = 0;
 
   Result result;
   result.closest = none;
@@ -93,11 +92,7 @@ __kernel void trace(__global const TreeNode* nodes, __global const TreeLeaf* lea
 __kernel void improve(__global const TreeNode* nodes, __global const TreeLeaf* leaves, __global Hit* hits,
                       __global uint* found) {
   const size_t i = get_global_id(0);
-  Ray ray;
-  ray.origin = (float3)(0.25f, 0.25f, 1.0f);
-  ray.direction = (float3)(0.0f, 0.0f, -1.0f);
-  ray.t_min = 0.0f;
-  ray.t_max = hits[i].u;
+  const Ray ray = free_ray((float3)(0.25f, 0.25f, 1.0f), (float3)(0.0f, 0.0f, -1.0f), 0.0f, hits[i].u);
   Hit hit = hits[i];
   found[i] = tree_closest(&ray, nodes, leaves, &hit);
   hits[i] = hit;
@@ -430,7 +425,7 @@ TEST_CASE("a hit that is there already is only replaced by one that comes before
     CHECK((replaced[i] & 1) == cases[i].replaced);
     CHECK((replaced[i] >> 1) == cases[i].any);
     if (cases[i].replaced)
-      CHECK(after[i] == HitData{1, 4, 6, 0.25f, 0.25f});
+      CHECK(after[i] == HitData{1, 4, 6, 0.25f, 0.25f, 1});
     else
       CHECK(after[i] == cases[i].held);
   }

@@ -1,0 +1,106 @@
+// One step of photons: what the surface that they have met does to them.
+#ifndef VITRUM_PHOTON_STEP_H
+#define VITRUM_PHOTON_STEP_H
+
+#include "interact.h"
+#include "outcome.h"
+#include "sampler.h"
+
+typedef struct {
+  Vec3 origin, direction;
+  Vec3 power;                  // [W]
+  Float t_min;
+  Uint stack, from, path;
+  Uint depth;                  // surfaces met
+  Mask alive;
+} Photons;
+
+// A sum of powers with what its roundings lost (Kahan), in each lane.
+typedef struct {
+  Vec3 sum, rest;
+} Tally;
+
+FUNCTION void add_compensated(Float* sum, Float* rest, const Float value) {
+  const Float corrected = value + *rest;
+  const Float next = *sum + corrected;
+  *rest = corrected - (next - *sum);
+  *sum = next;
+}
+
+FUNCTION void add_power(Tally* tally, const Mask which, const Vec3 power) {
+  add_compensated(&tally->sum.x, &tally->rest.x, which ? power.x : 0.0f);
+  add_compensated(&tally->sum.y, &tally->rest.y, which ? power.y : 0.0f);
+  add_compensated(&tally->sum.z, &tally->rest.z, which ? power.z : 0.0f);
+}
+
+// What the surface does to the living photons: their outcome, and with that ALIVE their next ray. Adds what the media
+// before it took to `absorbed`.
+FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, Photons* photons,
+                       Tally* absorbed) {
+  const Mask alive = photons->alive;
+  const Vec3 direction = photons->direction;
+  const Uint stack = photons->stack;
+  const Mask entering = surface->entering;
+  Mask front = entering;       // goes on before the surface
+  Uint outcome = OUTCOME_LOST;
+  Vec3 next = direction;
+
+  // [photon]
+  const Uint keys = encounter_keys(surface, stack);
+  Mask todo = alive & (surface->t < INFINITY);
+  while (ANY(todo)) {
+    const Encounter e = next_encounter(scene, todo, surface, keys, stack);
+    todo &= e.here == 0;
+#if HAS_ABSORPTION
+    // What the medium takes is counted by itself, not as a difference.
+    if (top_medium(e.stack) != 0) {
+      Vec3 left_over, taken;
+      media_attenuation(scene, e.stack, surface->t, &left_over, &taken);
+      add_power(absorbed, e.here, multiply3(photons->power, taken));
+      photons->power = select3(e.here, multiply3(photons->power, left_over), photons->power);
+    }
+#endif
+    if (e.material->surface == SURFACE_MIRROR) {
+      next = select3(e.here, mirrored(e, surface, direction), next);
+      outcome = e.here ? OUTCOME_ALIVE : outcome;
+#if HAS_DIELECTRIC
+    } else if (e.material->surface == SURFACE_DIELECTRIC) {
+      const Split split = split_at_dielectric(scene, e, surface, direction);
+      // One random number serves the first two choices: what a choice leaves of it is uniform again. Later ones are
+      // drawn anew, before its bits run out.
+      const Mask first_two = photons->depth < 2;
+      Float u = unit_float(photons->path);
+      if (ANY(e.here & (first_two == 0)))
+        u = first_two ? u : unit_float(hash_pair(photons->path, photons->depth));
+      const Mask reflect = u < split.R;
+      next = select3(e.here, split_chosen(&split, reflect, direction), next);
+      front = (e.here & (reflect == 0)) ? entering == 0 : front;
+      photons->stack =
+          e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : photons->stack;
+      const Float rest = (reflect ? u : u - split.R) / (reflect ? split.R : 1.0f - split.R);
+      // The low bits, which no choice has used, serve for the hash.
+      const Uint rest_bits = AS_UINT(TO_INT(smaller(rest, 0.99999994f) * 16777216.0f)) << 8 | (photons->path & 0xffu);
+      photons->path = (e.here & first_two) ? rest_bits : photons->path;
+      outcome = e.here ? OUTCOME_ALIVE : outcome;
+#endif
+    } else {
+      const int diffuse = e.material->surface == SURFACE_OPAQUE && is_diffuse(e.material);
+      const Uint caustic = photons->depth > 0 ? (Uint)OUTCOME_STORED : (Uint)OUTCOME_DIRECT;
+      outcome = e.here ? (diffuse ? caustic : (Uint)OUTCOME_ABSORBED) : outcome;
+    }
+  }
+  const Mask spent = (photons->depth + 1 >= max_depth) | (max_channel(photons->power) <= 0.0f);
+  outcome = (outcome == OUTCOME_ALIVE) & spent ? OUTCOME_CUT : outcome;
+  // [/photon]
+
+  photons->depth += alive ? (Uint)1 : (Uint)0;
+  photons->origin = surface->position;
+  photons->t_min = surface->error;
+  photons->from = leaving(surface, front);
+  // Those that end keep the direction that they came from.
+  photons->direction = next;
+  photons->alive = alive & (outcome == OUTCOME_ALIVE);
+  return alive ? outcome : (Uint)OUTCOME_ALIVE;
+}
+
+#endif
