@@ -191,11 +191,16 @@ static float3 tree_corner(__global const TreeLeaf* leaf, const uint corner, cons
   return (float3)(leaf->corners[corner][0][lane], leaf->corners[corner][1][lane], leaf->corners[corner][2][lane]);
 }
 
+static float tree_sum(const float3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
+
 // Is `p` within `error` [m] of the triangle's plane? The second term is what roundings do to the normal of a needle:
 // differences of corners, products and sums take 8 u of the lengths.
 static bool tree_near_plane(const float3 p, const float3 a, const float3 b, const float3 c, const float error) {
   const float3 ab = b - a, ac = c - a, ap = p - a, normal = cross(ab, ac);
-  return fabs(dot(normal, ap)) <= error * length(normal) + 0x1p-21f * length(ab) * length(ac) * length(ap);
+  const float height = fabs(dot(normal, ap));
+  // Mostly it is far off, which sums of components tell sooner than lengths.
+  if (height > error * tree_sum(normal) + 0x1p-21f * tree_sum(ab) * tree_sum(ac) * tree_sum(ap)) return false;
+  return height <= error * length(normal) + 0x1p-21f * length(ab) * length(ac) * length(ap);
 }
 
 // Does the triangle belong to the surface that the ray leaves, so that it is not met? The one that it leaves does. Of the

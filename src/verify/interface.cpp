@@ -149,7 +149,7 @@ void check_angles(FresnelKernel& border, const CheckContext& context, std::vecto
   };
   row("interface/reflectance", all.R, 16, "ulp", "Fresnel (Born and Wolf 1.5.2), 113 bits", 0);
   curve(all.R_by_binade);
-  row("interface/transmittance", all.T, 16, "ulp", "the same by amplitudes t, cos > 1e-30", 1);
+  row("interface/transmittance", all.T, 8, "ulp", "the same by amplitudes t, cos > 1e-30", 1);
   curve(all.T_by_binade);
   row("interface/R + T = 1", all.balance, 1e-6, "", "conservation of energy", 2);
   row("interface/range", all.range, 0, "values", "R, T, |r| in [0, 1], all finite", 3);

@@ -76,7 +76,7 @@ struct Accuracy {
     MESSAGE(told("T [ulp]", T));
     MESSAGE(told("|R + T - 1|", balance));
     CHECK(R.error <= 16);
-    CHECK(T.error <= 16);
+    CHECK(T.error <= 8);
     CHECK(balance.error < 1e-6);
     CHECK(wrong_total == 0);
   }
