@@ -31,6 +31,21 @@ __kernel void border(__global const float* in, __global float* out, const uint c
   OUTPUT(11, reflected.z);
 }
 
+// R and T of the border {eta, 1 / eta, k_hi, k_lo} at the cosines whose bits are first, first + 1, ...
+__kernel void cosines(const float eta, const float eta_inverse, const float k_hi, const float k_lo, const uint first,
+                      __global float* out, const uint count) {
+  const uint i = get_global_id(0) * WIDTH;
+  if (i >= count) return;
+  Interface b;
+  b.eta = eta;
+  b.eta_inverse = eta_inverse;
+  b.k_hi = k_hi;
+  b.k_lo = k_lo;
+  const Fresnel f = fresnel(b, AS_FLOAT(LANES + (first + i)));
+  OUTPUT(0, f.R);
+  OUTPUT(1, f.T);
+}
+
 __kernel void medium(__global const float* in, __global float* out, const uint count) {
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;

@@ -86,10 +86,14 @@ int run_verify(const VerifyArguments& arguments) {
     Progress progress("verify");
     const bool was_quiet = quiet();
     set_quiet(true);            // the pictures that are rendered on the way are nobody's business
-    for (size_t k = 0; k < groups.size(); ++k) {
-      progress.update(static_cast<double>(k) / static_cast<double>(groups.size()));
-      const CheckContext context{device, arguments.device, arguments.kernels, arguments.full};
-      for (CheckResult& result : groups[k].run(context)) run.results.push_back(std::move(result));
+    double total = 0.0, done = 0.0;
+    for (const CheckGroup& group : groups) total += group.full_share;
+    for (const CheckGroup& group : groups) {
+      const auto within = [&](double part) { progress.update((done + part * group.full_share) / total); };
+      within(0.0);
+      for (CheckResult& result : group.run({device, arguments.device, arguments.kernels, arguments.full, within}))
+        run.results.push_back(std::move(result));
+      done += group.full_share;
     }
     set_quiet(was_quiet);
   }

@@ -9,13 +9,13 @@ namespace vitrum {
 
 const std::vector<CheckGroup>& check_groups() {
   static const std::vector<CheckGroup> groups = {
-      {"interface", "Fresnel and Snell, against quadruple precision", check_interface},
-      {"absorption", "Bouguer's law", check_absorption},
-      {"slab-and-ball", "pictures of a slab, a ball and nested balls, against closed forms", check_slab_and_ball},
-      {"geometry", "rays at edges and corners of meshes, and photons that go through them", check_geometry},
-      {"photons", "balance of power, and caustics of a ball by quadrature", check_photons},
-      {"lights", "irradiance under each kind of light", check_lights},
-      {"determinism", "the same bits again, and with other group sizes", check_determinism},
+      {"interface", "Fresnel and Snell, against quadruple precision", 0.35, check_interface},
+      {"absorption", "Bouguer's law", 0.05, check_absorption},
+      {"slab-and-ball", "pictures of a slab, a ball and nested balls, against closed forms", 0.1, check_slab_and_ball},
+      {"geometry", "rays at edges and corners of meshes, and photons that go through them", 0.2, check_geometry},
+      {"photons", "balance of power, and caustics of a ball by quadrature", 0.15, check_photons},
+      {"lights", "irradiance under each kind of light", 0.1, check_lights},
+      {"determinism", "the same bits again, and with other group sizes", 0.05, check_determinism},
   };
   return groups;
 }

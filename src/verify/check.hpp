@@ -3,6 +3,7 @@
 // beside this one, declared in groups.hpp and listed in check.cpp.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,11 +36,13 @@ struct CheckContext {
   std::string device_choice;    ///< as --device says it, for a device of another group size
   KernelFiles kernels;
   bool full = false;            ///< minutes of it instead of seconds
+  std::function<void(double)> progress;  ///< told how much of the group is done, 0 to 1
 };
 
 struct CheckGroup {
   const char* name;             ///< as after --only
   const char* what;             ///< for --help
+  double full_share;            ///< of the time that a full run takes, about
   std::vector<CheckResult> (*run)(const CheckContext&);  ///< throws Error as the device and its kernels do
 };
 

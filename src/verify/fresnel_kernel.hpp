@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "device/kernel_headers.hpp"
 #include "verify/check.hpp"
 
 namespace vitrum {
@@ -29,13 +30,21 @@ class Fields {
 
 class FresnelKernel {
  public:
-  /// `kernel`: "border" or "medium", which gives `outputs` fields.
+  /// `kernel`: "border", "medium" or "cosines", which gives `outputs` fields.
   FresnelKernel(const CheckContext& context, const char* kernel, size_t outputs)
       : device_(context.device),
         outputs_(outputs),
         kernel_(context.device.build("checks/fresnel.cl", kernel_source(context.kernels, {"checks/fresnel.cl"}),
                                      "-cl-std=CL1.2"),
                 kernel) {}
+
+  /// The outputs of kernel "cosines" for `count` cosines, a multiple of 16.
+  Fields run(const kernel::InterfaceData& border, uint32_t first, uint32_t count) {
+    const auto outputs = device_.allocate<float>(count * outputs_, "outputs of checks");
+    set_arguments(kernel_, 0, border.eta, border.eta_inverse, border.k_hi, border.k_lo, first, outputs, count);
+    device_.launch("checks", kernel_, count / device_.width());
+    return {count, device_.read(outputs, 0, outputs.size())};
+  }
 
   /// The outputs of `in`, whose count is a multiple of 16.
   Fields run(const Fields& in) {

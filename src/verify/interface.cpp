@@ -158,6 +158,58 @@ void check_angles(FresnelKernel& border, const CheckContext& context, std::vecto
       "the same text compiled for the host", 5);
 }
 
+struct CosineTally {
+  Worst R, T;
+  void merge(const CosineTally& other) {
+    R.merge(other.R);
+    T.merge(other.T);
+  }
+};
+
+/// R and T of every float from 0 to 1, for each side of each glass. The truth is the textbook's form in double, for the
+/// border whose k is k_hi + k_lo: of that, Q^2 = cos^2 + k is off by one rounding even next to the critical angle.
+void check_every_cosine(const CheckContext& context, std::vector<CheckResult>& rows) {
+  FresnelKernel cosines(context, "cosines", 2);
+  constexpr uint64_t end = 0x3f800001u, batch = 1u << 20;  // stays in a CPU's caches
+  Worst worst_R, worst_T;
+  std::string where_R, where_T;
+  for (size_t side = 0; side < sides; ++side) {
+    const Indices n = side_of(side);
+    const kernel::InterfaceData data = make_interface(n.n_i, n.n_t);
+    const double k = static_cast<double>(data.k_hi) + data.k_lo, eta2 = 1 + k;
+    for (uint64_t first = 0; first < end; first += batch) {
+      context.progress((static_cast<double>(side) + static_cast<double>(first) / end) / sides);
+      const auto count = static_cast<uint32_t>(std::min(batch, end - first));
+      const Fields out = cosines.run(data, static_cast<uint32_t>(first), (count + 15) / 16 * 16);
+      const auto tally = tallied<CosineTally>(count, [&](CosineTally& sum, uint32_t from, uint32_t to) {
+        for (uint32_t i = from; i < to; ++i) {
+          const double c = std::bit_cast<float>(static_cast<uint32_t>(first) + i);
+          const double Q2 = std::fma(c, c, k);
+          double R = 1.0, T = 0.0;
+          if (Q2 >= 0) {
+            const double Q = std::sqrt(Q2), s = 1 / (c + Q), p = 1 / (eta2 * c + Q);
+            const double r_s = (c - Q) * s, r_p = (eta2 * c - Q) * p;
+            R = 0.5 * (r_s * r_s + r_p * r_p);
+            T = 2 * c * Q * (s * s + eta2 * p * p);
+          }
+          sum.R.add(std::abs(out(0, i) - R) / float_ulp(R), first + i);
+          if (c > 1e-30) sum.T.add(std::abs(out(1, i) - T) / float_ulp(T), first + i);
+        }
+      });
+      const auto place = [&](const Worst& worst) {
+        return input_text(n, std::bit_cast<float>(static_cast<uint32_t>(worst.at)));
+      };
+      if (tally.R.error > worst_R.error) where_R = place(tally.R);
+      if (tally.T.error > worst_T.error) where_T = place(tally.T);
+      worst_R.merge(tally.R);
+      worst_T.merge(tally.T);
+    }
+  }
+  rows.push_back({"interface/reflectance, every cosine", worst_R.cases, worst_R.error, 16, "ulp", "Fresnel in double", where_R});
+  rows.push_back({"interface/transmittance, every cosine", worst_T.cases, worst_T.error, 8, "ulp",
+                  "Fresnel in double, cos > 1e-30", where_T});
+}
+
 /// Brewster's angle, equal indices, cosines that are none, and T from both sides.
 void check_special_angles(FresnelKernel& border, std::vector<CheckResult>& rows) {
   struct Input {
@@ -298,6 +350,7 @@ std::vector<CheckResult> check_interface(const CheckContext& context) {
   check_angles(border, context, rows);
   check_special_angles(border, rows);
   check_directions(border, context, rows);
+  if (context.full) check_every_cosine(context, rows);
   return rows;
 }
 
