@@ -221,6 +221,22 @@ TEST_CASE("media that overlap, by their priorities") {
   check_against_reference(scene, 8);
 }
 
+TEST_CASE("media that overlap have no border where one fills both sides, by the constant reflectance too") {
+  Scene scene = small_scene("default_scene", {"render.reflectance=0.1"});
+  add(scene, Sphere{{0.25, 0.5, 0.1}, 0.2}, add(scene, glass(1.33, {0.5, 0.1, 2}, -1)));
+  check_against_reference(scene, 8);
+}
+
+TEST_CASE("eye, lamp, mirror and cardboard in water without a ground that absorbs blue alone") {
+  Scene scene = small_scene("default_scene");
+  std::erase_if(scene.shapes, [](const Shape& s) { return s.name != "cardboard"; });
+  Material mirror;
+  mirror.surface = Surface::mirror;
+  add(scene, Sphere{{0, 0.5, 0}, 0.3}, add(scene, mirror));
+  add(scene, Plane{{0, 3, 0}, {0, 1, 0}, {}, {}}, add(scene, glass(1.33, {0, 0, 0.7})));
+  check_against_reference(scene, 8);
+}
+
 TEST_CASE("the eye where two media overlap") {
   Scene scene = small_scene("default_scene", {"camera.eye=[0.1, 0.55, 0.05]", "camera.look_at=[-0.3, 0.2, 1]"});
   add(scene, Sphere{{0.15, 0.5, 0.1}, 0.3}, add(scene, glass(1.33, {0.5, 0.1, 2}, 1)));
