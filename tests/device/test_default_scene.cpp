@@ -237,6 +237,19 @@ TEST_CASE("eye, lamp, mirror and cardboard in water without a ground that absorb
   check_against_reference(scene, 8);
 }
 
+TEST_CASE("a mesh that is a light shows its front alone") {
+  Scene scene = small_scene("default_scene", {"render.lights=false"});
+  Material lamp;
+  lamp.emission = {1, 2, 3};
+  lamp.emission_is_light = true;
+  Mesh panels;  // the first faces the eye, the second turns its back on it
+  panels.positions = {{0.5f, 0.2f, 1}, {1, 0.2f, 0.5f}, {0.5f, 1, 1}, {1, 1, 0.5f}};
+  panels.triangles = {{0, 1, 2}, {1, 2, 3}};
+  panels.materials.assign(2, add(scene, lamp));
+  add(scene, panels);
+  check_against_reference(scene, 8);
+}
+
 TEST_CASE("the eye where two media overlap") {
   Scene scene = small_scene("default_scene", {"camera.eye=[0.1, 0.55, 0.05]", "camera.look_at=[-0.3, 0.2, 1]"});
   add(scene, Sphere{{0.15, 0.5, 0.1}, 0.3}, add(scene, glass(1.33, {0.5, 0.1, 2}, 1)));

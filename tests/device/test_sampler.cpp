@@ -1,6 +1,7 @@
 // kernels/sampler.h by itself, and where samples fall in a pixel.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -60,4 +61,34 @@ TEST_CASE("samples fill a pixel in both directions together") {
   const std::vector<double> radiance = render(scene, device, {}).film.mean("radiance");
   // Low-discrepancy points: a few of 64 at most are in another quarter.
   for (const double share : radiance) CHECK(std::abs(share - 0.25) <= 3.0 / 64);
+}
+
+TEST_CASE("each replicate shifts the samples of a pixel anew") {
+  // The one pixel sees a ramp from 0 to 1, so its radiance tells where a sample fell.
+  Scene scene;
+  scene.camera = {CameraType::pinhole, {0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 90.0};
+  scene.film.width = scene.film.height = 1;
+  scene.render.samples = scene.render.passes = 2;
+  Texture texture;
+  texture.offset = {0.5, 0.5};
+  texture.width = 2;
+  texture.height = 1;
+  texture.texels = {glm::vec3(0), glm::vec3(1)};
+  scene.textures.push_back(texture);
+  Material material = surface(Surface::unlit);
+  material.diffuse_texture = 0;
+  scene.materials.push_back(material);
+  add(scene, Plane{{0, 0, 0}, {0, 1, 0}, {0.25, 0, 0}, {0, 0, 0.25}}, 0);
+  Device device;
+  // With a shift in common, the second sample would always be the sequence's step away from the first.
+  double low = 1, high = 0;
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    scene.render.seed = seed;
+    const Film film = render(scene, device, {}).film;
+    REQUIRE(film.replicates() == 2);
+    const double step = film.plane("radiance", 1)->sums[0] - film.plane("radiance", 0)->sums[0];
+    low = std::min(low, step - std::floor(step));
+    high = std::max(high, step - std::floor(step));
+  }
+  CHECK(high - low > 0.2);
 }
