@@ -250,6 +250,20 @@ TEST_CASE("a mesh that is a light shows its front alone") {
   check_against_reference(scene, 8);
 }
 
+TEST_CASE("open sheets of glass seen from behind are left though they were never entered") {
+  Scene scene = small_scene("default_scene", {"render.lights=false", "background.radiance=[0, 0, 0]",
+                                              "camera.eye=[0, -1, 0]", "camera.look_at=[1, 0, 0]"});
+  scene.shapes.clear();
+  const uint32_t sheet = add(scene, glass(1.5));
+  // Side by side, since what has been inside of a sheet does not know where it ends.
+  for (const double z : {-9.0, 0.1}) add(scene, Triangle{{-9, 0, z}, {0, 0, z + 8.9}, {9, 0, z}, {}, {}, {}}, sheet);
+  Material sky;
+  sky.surface = Surface::unlit;
+  sky.emission = {1, 2, 3};
+  add(scene, Plane{{0, 3, 0}, {0, -1, 0}, {}, {}}, add(scene, sky));
+  check_against_reference(scene, 16);
+}
+
 TEST_CASE("the eye where two media overlap") {
   Scene scene = small_scene("default_scene", {"camera.eye=[0.1, 0.55, 0.05]", "camera.look_at=[-0.3, 0.2, 1]"});
   add(scene, Sphere{{0.15, 0.5, 0.1}, 0.3}, add(scene, glass(1.33, {0.5, 0.1, 2}, 1)));
