@@ -203,6 +203,15 @@ TEST_CASE("a very coarse mesh of mirror, whose shading normals go astray") {
   check_against_reference(scene, 16);
 }
 
+TEST_CASE("a very coarse mesh that scatters, whose shading normals see a lamp behind the facet") {
+  Scene scene = small_scene("default_scene", {"light.lamp.position=[1.5, 0.6, -0.6]"});
+  std::erase_if(scene.shapes, [](const Shape& s) { return s.name == "ball"; });
+  Material chalk;
+  chalk.diffuse = Spectrum(0.8);
+  add(scene, tessellated_sphere({0.6f, 0.5f, 0.6f}, 0.5f, 4, 5, add(scene, chalk)));
+  check_against_reference(scene, 32);
+}
+
 TEST_CASE("textures on a sphere, and on a mesh without coordinates") {
   Scene scene = small_scene("default_scene");
   const uint32_t lawn = shape(scene, "lawn").material;

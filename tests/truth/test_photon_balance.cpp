@@ -1,6 +1,7 @@
 // The photons' power: what is shot, and what becomes of it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -82,5 +83,23 @@ TEST_CASE("where casters share a direction, the light's power is shared too") {
   }
   SUBCASE("the lamp in one of them, which lies the other way") {
     check_power_shot(two_balls_of_air(ball, {{0, 0.3, 0}, 0.5}), 4 * std::numbers::pi);
+  }
+}
+
+TEST_CASE("photons of a lamp that is far away fill their narrow cone evenly") {
+  Scene scene = two_balls_of_air({{0, -1000, 0}, 1.0}, {{0, -1000, 0}, 0.5});
+  scene.shapes.pop_back();
+  scene.materials.push_back(surface(Surface::opaque, 0.5));
+  add(scene, Plane{{0, -1002, 0}, {0, 1, 0}, {}, {}}, 1);
+  Device device;
+  constexpr uint64_t count = 20'000;
+  const std::vector<cl_float8> photons = PhotonRun(scene, device, count).shoot(0, count);
+  CHECK(photons.size() == count);
+  for (const double part : {0.1, 0.3, 0.7}) {
+    const auto within = std::count_if(photons.begin(), photons.end(), [&](const cl_float8& p) {
+      return std::hypot(p.s[0], p.s[2]) < part * 1.002;  // the ball's shadow on the plane
+    });
+    // Low-discrepancy points: 20 of 20,000 at most are on the wrong side of a circle.
+    CHECK(std::abs(static_cast<double>(within) / count - part * part) < 1e-3);
   }
 }
