@@ -203,12 +203,21 @@ TEST_CASE("a very coarse mesh of mirror, whose shading normals go astray") {
   check_against_reference(scene, 16);
 }
 
-TEST_CASE("a very coarse mesh that scatters, whose shading normals see a lamp behind the facet") {
+TEST_CASE("meshes that scatter, whose shading normals see a lamp behind the facet or turn away from the eye") {
   Scene scene = small_scene("default_scene", {"light.lamp.position=[1.5, 0.6, -0.6]"});
   std::erase_if(scene.shapes, [](const Shape& s) { return s.name == "ball"; });
   Material chalk;
   chalk.diffuse = Spectrum(0.8);
-  add(scene, tessellated_sphere({0.6f, 0.5f, 0.6f}, 0.5f, 4, 5, add(scene, chalk)));
+  const uint32_t material = add(scene, chalk);
+  add(scene, tessellated_sphere({0.6f, 0.5f, 0.6f}, 0.5f, 4, 5, material));
+  // No other side of it casts the shadow.
+  Mesh sheet;
+  sheet.positions = {{-1.2f, 0.3f, 0}, {-0.5f, 0.3f, 0}, {-0.85f, 0.9f, 0}};
+  sheet.normals = {glm::normalize(glm::vec3(1, 0, 0.2f))};
+  sheet.triangles = {{0, 1, 2}};
+  sheet.normal_indices = {{0, 0, 0}};
+  sheet.materials = {material};
+  add(scene, sheet);
   check_against_reference(scene, 32);
 }
 
