@@ -103,3 +103,17 @@ TEST_CASE("photons of a lamp that is far away fill their narrow cone evenly") {
     CHECK(std::abs(static_cast<double>(within) / count - part * part) < 1e-3);
   }
 }
+
+TEST_CASE("photons that miss what they are aimed at are direct light, which the map does not hold") {
+  Scene scene = two_balls_of_air({{0, 9, 0}, 1.0}, {{0, 9, 0}, 1.0});
+  scene.shapes.clear();
+  scene.materials = {surface(Surface::mirror), surface(Surface::opaque, 0.5)};
+  // Its bound is larger than the triangle, which throws the light back to where nothing is.
+  add(scene, Triangle{{-0.2, -1, -0.1}, {0, -1, 0.2}, {0.2, -1, -0.1}, {}, {}, {}}, 0);
+  add(scene, Plane{{0, -2, 0}, {0, 1, 0}, {}, {}}, 1);
+  Device device;
+  PhotonRun run(scene, device, 20'000);
+  CHECK(run.shoot(0, 20'000).empty());
+  CHECK(run.balance().photons_direct > 2'000);
+  CHECK(run.balance().photons_lost > 2'000);
+}
