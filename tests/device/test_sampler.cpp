@@ -23,7 +23,8 @@ __kernel void turn(__global float* sines, __global float* cosines) {
   STORE(cosines, i * WIDTH, c);
 }
 )";
-  cl::Kernel kernel(device.build("sampler_test.cl", kernel_source({}, {"sampler.h"}) + kernel_text, "-cl-std=CL1.2"), "turn");
+  const std::string source = kernel_source({}, {"sampler.h"}) + kernel_text;
+  cl::Kernel kernel(device.build("sampler_test.cl", source, "-cl-std=CL1.2"), "turn");
   constexpr uint32_t count = 1u << 20;
   std::vector<float> turns(count);
   for (uint32_t i = 0; i < count; ++i) turns[i] = static_cast<float>(i) / count;

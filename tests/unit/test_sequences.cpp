@@ -53,12 +53,13 @@ TEST_CASE("a photon sequence goes on where it was left") {
     CHECK(rest[d].start == whole[d].start + 123'456'789'012 * whole[d].alpha);
   }
   // Independent ones cannot go on, but must not begin again.
-  const auto before = sequences({5, 2, 1, 0}, Sampling::independent), after = sequences({5, 2, 1, 65536}, Sampling::independent);
+  const auto before = sequences({5, 2, 1, 0}, Sampling::independent);
+  const auto after = sequences({5, 2, 1, 65536}, Sampling::independent);
   for (size_t d = 0; d < before.size(); ++d) CHECK(before[d].start != after[d].start);
 }
 
 TEST_CASE("points of pixels fill the square evenly in both coordinates together") {
-  // Of 1024 points of R2 each of 16 x 16 squares has about 4; a sequence whose coordinates go in step leaves most empty.
+  // Of 1024 points of R2 each of 16 x 16 squares has about 4; coordinates that go in step leave most empty.
   int in_square[16][16] = {}, in_part[16] = {};
   for (uint64_t i = 0; i < 1024; ++i) {
     const std::array<float, 2> point = r2_point(i);
