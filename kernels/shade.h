@@ -42,7 +42,8 @@ FUNCTION Shading shade(const Scene scene, const CameraLimits limits, const Camer
   s.shown = zero;
   s.scattering.diffuse = zero;
   const Vec3 normal = shading_normal(surface);
-  s.scattering.normal = select3(dot3(direction, normal) > 0.0f, negate3(normal), normal);
+  // On the side of the facet that is seen, also where the shading normal itself turns away from the viewer.
+  s.scattering.normal = select3(surface->entering, normal, negate3(normal));
 #if HAS_HIGHLIGHTS
   s.scattering.specular = zero;
   s.scattering.shininess = 0.0f;

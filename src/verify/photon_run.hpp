@@ -21,9 +21,10 @@ class PhotonRun {
         device_scene_(upload(device, data_, features_, nullptr)),
         pass_(KernelContext{device_, kernels_, scene_, data_, device_scene_, features_}, largest_pass) {}
 
-  /// Shoots `count` photons of `replicate` and returns those that were stored: x, y, z, -, power r, g, b, - each.
-  std::vector<cl_float8> shoot(uint32_t replicate, uint64_t count) {
-    pass_.run(replicate, 0, count, [](double) {});
+  /// Shoots `count` photons of `replicate`, behind `before` of them, and returns those that were stored: x, y, z, -,
+  /// power r, g, b, - each.
+  std::vector<cl_float8> shoot(uint32_t replicate, uint64_t count, uint64_t before = 0) {
+    pass_.run(replicate, before, count, [](double) {});
     return read_photons(device_, pass_.map());
   }
 

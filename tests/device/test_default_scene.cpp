@@ -203,6 +203,24 @@ TEST_CASE("a very coarse mesh of mirror, whose shading normals go astray") {
   check_against_reference(scene, 16);
 }
 
+TEST_CASE("meshes that scatter, whose shading normals see a lamp behind the facet or turn away from the eye") {
+  Scene scene = small_scene("default_scene", {"light.lamp.position=[1.5, 0.6, -0.6]"});
+  std::erase_if(scene.shapes, [](const Shape& s) { return s.name == "ball"; });
+  Material chalk;
+  chalk.diffuse = Spectrum(0.8);
+  const uint32_t material = add(scene, chalk);
+  add(scene, tessellated_sphere({0.6f, 0.5f, 0.6f}, 0.5f, 4, 5, material));
+  // No other side of it casts the shadow.
+  Mesh sheet;
+  sheet.positions = {{-1.2f, 0.3f, 0}, {-0.5f, 0.3f, 0}, {-0.85f, 0.9f, 0}};
+  sheet.normals = {glm::normalize(glm::vec3(1, 0, 0.2f))};
+  sheet.triangles = {{0, 1, 2}};
+  sheet.normal_indices = {{0, 0, 0}};
+  sheet.materials = {material};
+  add(scene, sheet);
+  check_against_reference(scene, 32);
+}
+
 TEST_CASE("textures on a sphere, and on a mesh without coordinates") {
   Scene scene = small_scene("default_scene");
   const uint32_t lawn = shape(scene, "lawn").material;
@@ -219,6 +237,49 @@ TEST_CASE("media that overlap, by their priorities") {
   add(scene, Sphere{{-0.1, 0.55, 0.1}, 0.1}, add(scene, glass(1.0, Spectrum(0.0), 1)));
   add(scene, Sphere{{0.05, 0.3, 0.2}, 0.15}, add(scene, glass(1.8, {0, 1, 1}, 0)));
   check_against_reference(scene, 8);
+}
+
+TEST_CASE("media that overlap have no border where one fills both sides, by the constant reflectance too") {
+  Scene scene = small_scene("default_scene", {"render.reflectance=0.1"});
+  add(scene, Sphere{{0.25, 0.5, 0.1}, 0.2}, add(scene, glass(1.33, {0.5, 0.1, 2}, -1)));
+  check_against_reference(scene, 8);
+}
+
+TEST_CASE("eye, lamp, mirror and cardboard in water without a ground that absorbs blue alone") {
+  Scene scene = small_scene("default_scene");
+  std::erase_if(scene.shapes, [](const Shape& s) { return s.name != "cardboard"; });
+  Material mirror;
+  mirror.surface = Surface::mirror;
+  add(scene, Sphere{{0, 0.5, 0}, 0.3}, add(scene, mirror));
+  add(scene, Plane{{0, 3, 0}, {0, 1, 0}, {}, {}}, add(scene, glass(1.33, {0, 0, 0.7})));
+  check_against_reference(scene, 8);
+}
+
+TEST_CASE("a mesh that is a light shows its front alone") {
+  Scene scene = small_scene("default_scene", {"render.lights=false"});
+  Material lamp;
+  lamp.emission = {1, 2, 3};
+  lamp.emission_is_light = true;
+  Mesh panels;  // the first faces the eye, the second turns its back on it
+  panels.positions = {{0.5f, 0.2f, 1}, {1, 0.2f, 0.5f}, {0.5f, 1, 1}, {1, 1, 0.5f}};
+  panels.triangles = {{0, 1, 2}, {1, 2, 3}};
+  panels.materials.assign(2, add(scene, lamp));
+  add(scene, panels);
+  check_against_reference(scene, 8);
+}
+
+TEST_CASE("open sheets of glass seen from behind are left though they were never entered") {
+  Scene scene = small_scene("default_scene", {"render.lights=false", "background.radiance=[0, 0, 0]",
+                                              "camera.eye=[0, -1, 0]", "camera.look_at=[1, 0, 0]"});
+  scene.shapes.clear();
+  const uint32_t sheet = add(scene, glass(1.5));
+  // Side by side, since what has been inside of a sheet does not know where it ends.
+  for (const double z : {-9.0, 0.1}) add(scene, Triangle{{-9, 0, z}, {0, 0, z + 8.9}, {9, 0, z}, {}, {}, {}}, sheet);
+  Material sky;
+  sky.surface = Surface::unlit;
+  sky.emission = {1, 2, 3};
+  add(scene, Plane{{0, 3, 0}, {0, -1, 0}, {}, {}}, add(scene, sky));
+  check_against_reference(scene, 16);
 }
 
 TEST_CASE("the eye where two media overlap") {

@@ -1,14 +1,19 @@
-// Photons that wait for a packet of their own must not overrun their queue: it lost their power once, with 16 lanes first
-// of all in this very scene.
+// The photons' power: what is shot, and what becomes of it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
+#include "film/statistics.hpp"
 #include "verify/photon_run.hpp"
 #include "verify/scenes.hpp"
 
 using namespace vitrum;
 
+// Photons that wait for a packet of their own must not overrun their queue: it lost their power once, with 16 lanes first
+// of all in this very scene.
 TEST_CASE("the balance of power holds where photons often change between inside and outside") {
   Scene scene;
   scene.camera = {CameraType::pinhole, {0, 3, 8}, {0, 0, 0}, {0, 1, 0}, 45.0};
@@ -24,5 +29,91 @@ TEST_CASE("the balance of power holds where photons often change between inside 
   PhotonRun run(scene, device, 500'000);
   run.shoot(0, 500'000);
   const PhotonBalance& b = run.balance();
-  for (int c = 0; c < 3; ++c) CHECK(std::abs((b.stored[c] + b.direct[c] + b.lost[c] + b.cut[c]) / b.shot[c] - 1) < 1e-6);
+  // The same floats are added up in another order: by Kahan's bound each sum is within two roundings of the whole.
+  for (int c = 0; c < 3; ++c) CHECK(std::abs((b.stored[c] + b.direct[c] + b.lost[c] + b.cut[c]) / b.shot[c] - 1) < 0x1p-23);
+}
+
+namespace {
+
+/// A lamp of 1 W/sr at the origin and two balls of air, nothing else.
+Scene two_balls_of_air(const Sphere& a, const Sphere& b) {
+  Scene scene;
+  scene.camera = {CameraType::pinhole, {0, 3, 8}, {0, 0, 0}, {0, 1, 0}, 45.0};
+  scene.materials = {glass(1.0)};
+  add(scene, a, 0);
+  add(scene, b, 0);
+  scene.lights.push_back({"lamp", {}, PointLight{{0, 0, 0}, Spectrum(1.0)}});
+  scene.photons.estimate = PhotonEstimate::fixed_radius;
+  scene.photons.radius = 0.05;
+  return scene;
+}
+
+/// Solid angle of the cone from the origin around a ball whose centre is at distance d [sr].
+double solid_angle(double radius, double d) { return 2 * std::numbers::pi * (1 - std::sqrt(1 - radius * radius / (d * d))); }
+
+/// The power shot, by 16 replicates, must be that in the union of the cones, which counts nothing twice.
+void check_power_shot(const Scene& scene, double truth) {
+  constexpr uint32_t replicates = 16;
+  Device device;
+  PhotonRun run(scene, device, 20'000);
+  double sum = 0, squares = 0, before = 0;
+  for (uint32_t replicate = 0; replicate < replicates; ++replicate) {
+    run.shoot(replicate, 20'000);
+    const double power = run.balance().shot.y - std::exchange(before, run.balance().shot.y);
+    sum += power;
+    squares += power * power;
+  }
+  const double mean = sum / replicates;
+  const double error = std::sqrt(std::max(squares / replicates - mean * mean, 0.0) / (replicates - 1));
+  MESSAGE("power " << mean << " +- " << error << ", truth " << truth);
+  CHECK(error < 1e-3 * truth);
+  // Powers are floats.
+  CHECK(std::abs(mean - truth) <= student_limit(sidak_level(1e-4, 3), replicates - 1) * error + 1e-6 * truth);
+}
+
+}  // namespace
+
+TEST_CASE("where casters share a direction, the light's power is shared too") {
+  const Sphere ball{{0, -2, 0}, 0.8};
+  SUBCASE("one behind the other") {
+    check_power_shot(two_balls_of_air(ball, {{0, -4, 0}, 1.0}), solid_angle(0.8, 2));
+  }
+  SUBCASE("side by side, apart") {
+    check_power_shot(two_balls_of_air(ball, {{4, 0, 0}, 1.0}), solid_angle(0.8, 2) + solid_angle(1.0, 4));
+  }
+  SUBCASE("the lamp in one of them, which lies the other way") {
+    check_power_shot(two_balls_of_air(ball, {{0, 0.3, 0}, 0.5}), 4 * std::numbers::pi);
+  }
+}
+
+TEST_CASE("photons of a lamp that is far away fill their narrow cone evenly") {
+  Scene scene = two_balls_of_air({{0, -1000, 0}, 1.0}, {{0, -1000, 0}, 0.5});
+  scene.shapes.pop_back();
+  scene.materials.push_back(surface(Surface::opaque, 0.5));
+  add(scene, Plane{{0, -1002, 0}, {0, 1, 0}, {}, {}}, 1);
+  Device device;
+  constexpr uint64_t count = 20'000;
+  const std::vector<cl_float8> photons = PhotonRun(scene, device, count).shoot(0, count);
+  CHECK(photons.size() == count);
+  for (const double part : {0.1, 0.3, 0.7}) {
+    const auto within = std::count_if(photons.begin(), photons.end(), [&](const cl_float8& p) {
+      return std::hypot(p.s[0], p.s[2]) < part * 1.002;  // the ball's shadow on the plane
+    });
+    // Low-discrepancy points: 20 of 20,000 at most are on the wrong side of a circle.
+    CHECK(std::abs(static_cast<double>(within) / count - part * part) < 1e-3);
+  }
+}
+
+TEST_CASE("photons that miss what they are aimed at are direct light, which the map does not hold") {
+  Scene scene = two_balls_of_air({{0, 9, 0}, 1.0}, {{0, 9, 0}, 1.0});
+  scene.shapes.clear();
+  scene.materials = {surface(Surface::mirror), surface(Surface::opaque, 0.5)};
+  // Its bound is larger than the triangle, which throws the light back to where nothing is.
+  add(scene, Triangle{{-0.2, -1, -0.1}, {0, -1, 0.2}, {0.2, -1, -0.1}, {}, {}, {}}, 0);
+  add(scene, Plane{{0, -2, 0}, {0, 1, 0}, {}, {}}, 1);
+  Device device;
+  PhotonRun run(scene, device, 20'000);
+  CHECK(run.shoot(0, 20'000).empty());
+  CHECK(run.balance().photons_direct > 2'000);
+  CHECK(run.balance().photons_lost > 2'000);
 }
