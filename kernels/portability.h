@@ -22,6 +22,8 @@
 #else
 #define PREFETCH_TO_WRITE(address)
 #endif
+// A kernel whose SIMD is its own: a compiler that packs work-items into lanes is told not to (OpenCL 1.2, 6.7.2).
+#define KERNEL __kernel __attribute__((vec_type_hint(Float)))
 // The body of a kernel. PoCL compiles a kernel three times over, but what it calls only once.
 #define BODY static __attribute__((noinline)) void
 // ulong8 passes between functions in another way with AVX-512 than without: no matter, since all of them are inlined.

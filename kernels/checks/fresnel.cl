@@ -5,7 +5,7 @@
 #define INPUT(field) LOAD(in + (field) * (ulong)count, i)
 #define OUTPUT(field, value) STORE(out + (field) * (ulong)count, i, value)
 
-__kernel void border(__global const float* in, __global float* out, const uint count) {
+KERNEL void border(__global const float* in, __global float* out, const uint count) {
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;
   Interface b;
@@ -31,7 +31,7 @@ __kernel void border(__global const float* in, __global float* out, const uint c
   OUTPUT(11, reflected.z);
 }
 
-__kernel void medium(__global const float* in, __global float* out, const uint count) {
+KERNEL void medium(__global const float* in, __global float* out, const uint count) {
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;
   OUTPUT(0, transmittance(INPUT(0), INPUT(1)));
