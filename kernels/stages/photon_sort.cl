@@ -57,6 +57,9 @@ BODY sort_bucket(const uint first_cell, const uint cells, const uint count, cons
     columns[5 * stride + i] = photon.s5;
     columns[6 * stride + i] = photon.s6;
   }
+  // Whoever reads whole vectors finds numbers behind the last.
+  for (uint field = 0; field < PHOTON_FIELDS; ++field)
+    for (uint i = count; i < stride; ++i) columns[field * stride + i] = 0.0f;
   for (uint i = 0; i < PHOTON_FIELDS * stride; i += 8) vstore8(vload8(0, columns + i), 0, bucket + i);
 }
 

@@ -16,6 +16,7 @@ const std::vector<CheckGroup>& check_groups() {
       {"photons", "balance of power, and caustics of a ball by quadrature", check_photons},
       {"lights", "irradiance under each kind of light", check_lights},
       {"determinism", "the same bits again, and with other group sizes", check_determinism},
+      {"devices", "another device's answers to the same questions, with --against", check_devices},
   };
   return groups;
 }

@@ -128,8 +128,8 @@ inline std::vector<NamedScene> switch_scenes(int size, uint64_t photons) {
           {"a bare floor", bare_floor(size)},
           {"mirrors", mirrors(size, photons)},
           {"constant reflectance", constant_reflectance(size, photons)},
-          {"everything, photons within a radius", everything(size, photons, false)},
-          {"everything, nearest photons", everything(size, photons, true)}};
+          {"everything, radius", everything(size, photons, false)},
+          {"everything, nearest", everything(size, photons, true)}};
 }
 
 }  // namespace vitrum
