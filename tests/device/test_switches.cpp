@@ -1,4 +1,4 @@
-// The kernels under every switch and at every width. tools/second_device runs this file under oclgrind too, so its scenes
+// The kernels under every switch and at every width. tools/check_races runs this file under oclgrind too, so its scenes
 // are small.
 
 #include <doctest/doctest.h>
