@@ -79,7 +79,8 @@ int run_verify(const VerifyArguments& arguments) {
     throw Error({"--kernels " + arguments.kernels.folder}, "there is no such folder",
                 "name the folder kernels/ of vitrum's sources");
   if (arguments.against.empty() && arguments.only == std::vector<std::string>{"devices"})
-    throw Error({"--only devices"}, "there is no second device", "name one with --against, as `vitrum devices` lists them");
+    throw Error({"--only devices"}, "there is no second device",
+                "name one with --against, as `vitrum devices` lists them");
   prepare_opencl(0);
   Device device(arguments.device);
   std::optional<Device> other;
@@ -128,7 +129,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<VerifyArguments>();
   command->add_option("--device", arguments->device, "OpenCL device: number or piece of its name, as `vitrum devices` lists")
       ->type_name("NAME");
-  command->add_option("--against", arguments->against, "Also hold this device's answers against those of --device, in ulp")
+  command->add_option("--against", arguments->against, "Also hold this device's answers against those of --device")
       ->type_name("NAME");
   const auto quick = command->add_flag("--quick", arguments->quick, "Some seconds of checks (the default)");
   command->add_flag("--full", arguments->full, "Minutes of checks: more inputs, larger pictures, more photons")->excludes(quick);

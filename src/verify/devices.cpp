@@ -1,5 +1,5 @@
-// Two devices, the same inputs: how far apart their answers are, in ulp. OpenCL rounds all operations alike but division
-// and square root (2.5 and 3 ulp, OpenCL 1.2, 7.4), so only what follows from those may differ.
+// Two devices, the same inputs: how far apart their answers are, in ulp. OpenCL rounds all operations alike but
+// division and square root (2.5 and 3 ulp, OpenCL 1.2, 7.4), so only what follows from those may differ.
 
 #include <bit>
 #include <cmath>
@@ -19,7 +19,8 @@ namespace {
 /// How far the floats are apart in ulp; 0 for the same bits, infinite where only one is a number.
 double ulp_between(float a, float b) {
   if (std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b)) return 0.0;
-  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b) ? 0.0 : std::numeric_limits<double>::infinity();
+  if (std::isnan(a) && std::isnan(b)) return 0.0;
+  if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<double>::infinity();
   return static_cast<double>(floats_between(a, b));
 }
 
@@ -35,7 +36,8 @@ struct Difference {
   CheckResult row(const std::string& name, double bound, const char* unit, const std::string& rule,
                   const std::string& where) const {
     return {"devices/" + name, worst.cases, worst.error, bound, unit,
-            rule + printed("; %.4g %% are bit-equal", 100.0 * static_cast<double>(same) / static_cast<double>(worst.cases)),
+            rule + printed("; %.4g %% are bit-equal",
+                           100.0 * static_cast<double>(same) / static_cast<double>(worst.cases)),
             where};
   }
 };
@@ -49,9 +51,8 @@ struct Output {
   const char* rule;
 };
 
-// With u = 2^-24, of which an ulp is at most two, division is off by 5u and the square root by 6u on either device. Then
-// Q is by 7u, w = 1 / (c + Q) by 15u, r by 34u, v by 15u, b by 26u absolute; so R by 100u and T by 80u of their size, bend
-// by 20u of its size, which is at most 4 here. Two devices may be off to different sides, so twice that.
+// What each device may be off by is derived in tests/device/test_fresnel.cpp. Two may be off to different sides, so twice
+// that; bend is at most 4 here.
 constexpr double u = 0x1p-24;
 constexpr Output border_outputs[] = {
     {"R", 200, false, "division 2.5, sqrt 3 ulp, twice"},
@@ -160,8 +161,8 @@ void compare_pictures(const CheckContext& context, std::vector<CheckResult>& row
     const size_t at = ulp.worst.at, pixel = at / 3, width = static_cast<size_t>(s.scene.film.width);
     CheckResult row = ulp.row(s.name, std::max(0.1 * relative_rms(reseeded, one), rounding), "of RMS",
                               printed("a tenth of another seed's; %.3g ulp at most", ulp.worst.error),
-                              printed("pixel (%zu, %zu), channel %zu: %.9g and %.9g", pixel % width, pixel / width, at % 3,
-                                      one[at], other[at]));
+                              printed("pixel (%zu, %zu), channel %zu: %.9g and %.9g", pixel % width, pixel / width,
+                                      at % 3, one[at], other[at]));
     row.worst = relative_rms(other, one);
     rows.push_back(row);
   }
