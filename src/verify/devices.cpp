@@ -56,7 +56,7 @@ struct Output {
 constexpr double u = 0x1p-24;
 constexpr Output border_outputs[] = {
     {"R", 200, false, "division 2.5, sqrt 3 ulp, twice"},
-    {"T", 160, false, "the same"},
+    {"T", 88, false, "the same"},
     {"r_perp", 68, false, "the same"},
     {"r_par", 128 * u, true, "the same"},
     {"bend", 40, false, "the same"},
