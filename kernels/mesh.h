@@ -12,7 +12,7 @@ FUNCTION float3 corner_of(const Scene scene, __global const TriangleData* triang
 
 FUNCTION float3 triangle_normal(const Scene scene, __global const TriangleData* triangle) {
   const float3 a = corner_of(scene, triangle, 0);
-  return normalize(cross(corner_of(scene, triangle, 1) - a, corner_of(scene, triangle, 2) - a));
+  return lane_normalize3(lane_cross3(corner_of(scene, triangle, 1) - a, corner_of(scene, triangle, 2) - a));
 }
 
 FUNCTION int leaves_mesh(const uint from) { return from != NO_INDEX && (from & FROM_MESH); }

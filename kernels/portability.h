@@ -22,6 +22,8 @@
 #else
 #define PREFETCH_TO_WRITE(address)
 #endif
+// A kernel whose SIMD is its own: a compiler that packs work-items into lanes is told not to (OpenCL 1.2, 6.7.2).
+#define KERNEL __kernel __attribute__((vec_type_hint(Float)))
 // The body of a kernel. PoCL compiles a kernel three times over, but what it calls only once.
 #define BODY static __attribute__((noinline)) void
 // ulong8 passes between functions in another way with AVX-512 than without: no matter, since all of them are inlined.
@@ -181,6 +183,17 @@ FUNCTION Mask lanes_below(uint first, uint count) { return LANES + first < count
 
 // One lane of a Vec3.
 #define LANE3(v, lane) ((float3)(LANE((v).x, float, lane), LANE((v).y, float, lane), LANE((v).z, float, lane)))
+
+// dot3, cross3 and normalize3 of one lane.
+FUNCTION float lane_dot3(float3 a, float3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+FUNCTION float3 lane_cross3(float3 a, float3 b) {
+  return (float3)(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
+}
+// Of any size: squares of what a tiny triangle has would be 0.
+FUNCTION float3 lane_normalize3(float3 a) {
+  const float3 scaled = (1.0f / max(max(fabs(a.x), fabs(a.y)), fabs(a.z))) * a;
+  return (1.0f / sqrt(lane_dot3(scaled, scaled))) * scaled;
+}
 
 FUNCTION void set_lane3(Vec3* v, uint lane, float3 to) {
   SET_LANE(v->x, float, lane, to.x);

@@ -28,7 +28,7 @@ FUNCTION void set_mesh_surface(const Scene scene, const Hit hit, uint lane, Surf
     const float3 n = fma((float3)(w), vload3(triangle->normal[0], scene.normals),
                          fma((float3)(hit.u), vload3(triangle->normal[1], scene.normals),
                              hit.v * vload3(triangle->normal[2], scene.normals)));
-    if (dot(n, geometric) > 1e-6f) shading = normalize(n);
+    if (lane_dot3(n, geometric) > 1e-6f) shading = lane_normalize3(n);
   }
   SET_LANE(surface->t, float, lane, hit.t);
   set_lane3(&surface->position, lane, position);
@@ -67,7 +67,7 @@ FUNCTION float contact_error(const float error, const float3 origin) {
 FUNCTION void find_contacts(const Scene scene, const Ray* ray, const Hit first, uint lane, SurfacePacket* surface) {
   const float3 position = LANE3(surface->position, lane);
   const float error = contact_error(LANE(surface->error, float, lane), ray->origin);
-  const float cosine = fabs(dot(ray->direction, LANE3(surface->geometric_normal, lane)));
+  const float cosine = fabs(lane_dot3(ray->direction, LANE3(surface->geometric_normal, lane)));
   Hit near[TREE_MAX_HITS];
   const uint n = tree_hits_within(ray, scene.nodes, scene.leaves, first.t, first.t + error / cosine, near);
   uint contacts = 0;
@@ -139,7 +139,7 @@ FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const uint 
     const float error = contact_error(triangle_error(corner_of(scene, triangle, 0), corner_of(scene, triangle, 1),
                                                      corner_of(scene, triangle, 2)), ray.origin);
     // An opaque exact shape in contact with the glass wins.
-    const float gap = (t_exact - hit.t) * fabs(dot(ray.direction, LANE3(surface->geometric_normal, lane)));
+    const float gap = (t_exact - hit.t) * fabs(lane_dot3(ray.direction, LANE3(surface->geometric_normal, lane)));
     if (dielectric && exact_is_opaque && gap <= error) return;
     set_mesh_surface(scene, hit, lane, surface);
   }

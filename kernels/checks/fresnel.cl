@@ -5,7 +5,7 @@
 #define INPUT(field) LOAD(in + (field) * (ulong)count, i)
 #define OUTPUT(field, value) STORE(out + (field) * (ulong)count, i, value)
 
-__kernel void border(__global const float* in, __global float* out, const uint count) {
+KERNEL void border(__global const float* in, __global float* out, const uint count) {
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;
   Interface b;
@@ -32,7 +32,7 @@ __kernel void border(__global const float* in, __global float* out, const uint c
 }
 
 // R and T of the border {eta, 1 / eta, k_hi, k_lo} at the cosines whose bits are first, first + 1, ...
-__kernel void cosines(const float eta, const float eta_inverse, const float k_hi, const float k_lo, const uint first,
+KERNEL void cosines(const float eta, const float eta_inverse, const float k_hi, const float k_lo, const uint first,
                       __global float* out, const uint count) {
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;
@@ -46,7 +46,7 @@ __kernel void cosines(const float eta, const float eta_inverse, const float k_hi
   OUTPUT(1, f.T);
 }
 
-__kernel void medium(__global const float* in, __global float* out, const uint count) {
+KERNEL void medium(__global const float* in, __global float* out, const uint count) {
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;
   OUTPUT(0, transmittance(INPUT(0), INPUT(1)));

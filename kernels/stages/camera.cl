@@ -159,11 +159,11 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
 // Samples [first_sample, last_sample) of pixels [first_pixel, last_pixel); first_pixel is a multiple of WIDTH, and the
 // film has room for whole packets. `eye_media`: the stack at the eye. `first_hits`: 1: albedo, normal and depth are
 // wanted.
-__kernel void camera(SCENE_PARAMETERS, __global const CameraData* camera_data, __global const CameraSample* samples,
-                     const uint first_sample, const uint last_sample, const uint jitter, const uint first_pixel,
-                     const uint last_pixel, const uint max_depth, const float min_weight, const float eye_index,
-                     const uint eye_media, const uint n_lights, const uint first_hits PHOTON_MAP_PARAMETERS,
-                     const uint film_stride, __global float* film, __global uint* counts) {
+KERNEL void camera(SCENE_PARAMETERS, __global const CameraData* camera_data, __global const CameraSample* samples,
+                   const uint first_sample, const uint last_sample, const uint jitter, const uint first_pixel,
+                   const uint last_pixel, const uint max_depth, const float min_weight, const float eye_index,
+                   const uint eye_media, const uint n_lights, const uint first_hits PHOTON_MAP_PARAMETERS,
+                   const uint film_stride, __global float* film, __global uint* counts) {
   const uint i = first_pixel + get_global_id(0) * WIDTH;
   if (i >= last_pixel) return;
   const Scene scene = SCENE;

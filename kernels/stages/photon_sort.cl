@@ -21,9 +21,9 @@ BODY move_run(const uint stored, const uint run_length, const uint bucket_shift,
 }
 
 // Moves the photons of each run into their buckets, as rows. places: [run * buckets + bucket].
-__kernel void sort_into_buckets(const uint n_runs, const uint run_length, const uint buckets, const uint bucket_shift,
-                                __global const PhotonRunData* reports, __global const float* photons,
-                                __global uint* places, __global float8* rows) {
+KERNEL void sort_into_buckets(const uint n_runs, const uint run_length, const uint buckets, const uint bucket_shift,
+                              __global const PhotonRunData* reports, __global const float* photons,
+                              __global uint* places, __global float8* rows) {
   const uint run = get_global_id(0);
   if (run < n_runs)
     move_run(reports[run].photons[OUTCOME_STORED], run_length, bucket_shift, photons + photon_in_run(run_length, run, 0),
@@ -57,15 +57,18 @@ BODY sort_bucket(const uint first_cell, const uint cells, const uint count, cons
     columns[5 * stride + i] = photon.s5;
     columns[6 * stride + i] = photon.s6;
   }
+  // Whoever reads whole vectors finds numbers behind the last.
+  for (uint field = 0; field < PHOTON_FIELDS; ++field)
+    for (uint i = count; i < stride; ++i) columns[field * stride + i] = 0.0f;
   for (uint i = 0; i < PHOTON_FIELDS * stride; i += 8) vstore8(vload8(0, columns + i), 0, bucket + i);
 }
 
 // Sorts all buckets. Work-item w takes those listed at [first_task[w], first_task[w + 1]), one after the other, and has
 // scratch from unit first_scratch[w] on.
-__kernel void sort_into_cells(const uint workers, const uint bucket_shift, __global const uint* tasks,
-                              __global const uint* first_task, __global const uint* first_scratch,
-                              __global const uint* counts, __global const BucketData* buckets, __global float* scratch,
-                              __global uint* next_of_cell, __global uint* first_of_cell, __global float* map) {
+KERNEL void sort_into_cells(const uint workers, const uint bucket_shift, __global const uint* tasks,
+                            __global const uint* first_task, __global const uint* first_scratch,
+                            __global const uint* counts, __global const BucketData* buckets, __global float* scratch,
+                            __global uint* next_of_cell, __global uint* first_of_cell, __global float* map) {
   const uint worker = get_global_id(0);
   if (worker >= workers) return;
   for (uint task = first_task[worker]; task < first_task[worker + 1]; ++task) {

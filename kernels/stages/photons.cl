@@ -234,11 +234,11 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
 
 // The first `count` photons of the sequences, `run_length` to a run. `share`: of the pair's power for each photon;
 // `upstream`: see emission.h.
-__kernel void photons(SCENE_PARAMETERS, __global const CasterData* casters, const uint n_casters,
-                      __global const SequenceData* sequences, const uint light_index, const uint caster,
-                      const float share, const float upstream, const uint count, const uint run_length,
-                      const uint max_depth, const GridData grid, const uint buckets, __global float* photons,
-                      __global uint* counts, __global PhotonRunData* reports) {
+KERNEL void photons(SCENE_PARAMETERS, __global const CasterData* casters, const uint n_casters,
+                    __global const SequenceData* sequences, const uint light_index, const uint caster,
+                    const float share, const float upstream, const uint count, const uint run_length,
+                    const uint max_depth, const GridData grid, const uint buckets, __global float* photons,
+                    __global uint* counts, __global PhotonRunData* reports) {
   const uint run = get_global_id(0);
   const uint first = run * run_length;
   if (first >= count) return;

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands/commands.hpp"
 #include "commands/outputs.hpp"
@@ -18,11 +19,15 @@ namespace vitrum {
 namespace {
 
 struct VerifyArguments {
-  std::string device, report, report_html;
+  std::string device, against, report, report_html;
   std::vector<std::string> only;
   KernelFiles kernels;
   bool full = false, quick = false;
 };
+
+nlohmann::ordered_json device_json(const DeviceInfo& device) {
+  return {{"name", device.name}, {"platform", device.platform}, {"version", device.version}, {"driver", device.driver}};
+}
 
 /// The groups named, all if none is. Throws Error for a name that is none.
 std::vector<CheckGroup> chosen_groups(const std::vector<std::string>& names) {
@@ -56,8 +61,8 @@ std::string json_report(const VerifyRun& run) {
                     {"unit", r.unit}, {"truth", r.truth}, {"worst_input", r.worst_input}});
   const nlohmann::ordered_json report = {
       {"version", version()},
-      {"device", {{"name", run.device.name}, {"platform", run.device.platform}, {"version", run.device.version},
-                  {"driver", run.device.driver}}},
+      {"device", device_json(run.device)},
+      {"against", run.other ? device_json(*run.other) : nlohmann::ordered_json()},
       {"mode", run.full ? "full" : "quick"},
       {"seconds", run.seconds},
       {"checks", rows},
@@ -73,14 +78,21 @@ int run_verify(const VerifyArguments& arguments) {
   if (!arguments.kernels.folder.empty() && !std::filesystem::is_directory(arguments.kernels.folder))
     throw Error({"--kernels " + arguments.kernels.folder}, "there is no such folder",
                 "name the folder kernels/ of vitrum's sources");
+  if (arguments.against.empty() && arguments.only == std::vector<std::string>{"devices"})
+    throw Error({"--only devices"}, "there is no second device",
+                "name one with --against, as `vitrum devices` lists them");
   prepare_opencl(0);
   Device device(arguments.device);
-  std::printf("%s\n%-36s %10s  %9s %9s  %-15s %-4s  %s\n", device.info().name.c_str(), "check", "cases", "worst", "bound",
-              "unit", "", "truth");
+  std::optional<Device> other;
+  if (!arguments.against.empty()) other.emplace(arguments.against);
+  std::printf("%s, %s\n", device.info().name.c_str(), device.info().platform.c_str());
+  if (other) std::printf("against %s, %s\n", other->info().name.c_str(), other->info().platform.c_str());
+  std::printf("%-36s %10s  %9s %9s  %-15s %-4s  %s\n", "check", "cases", "worst", "bound", "unit", "", "truth");
   std::fflush(stdout);
 
   VerifyRun run;
   run.device = device.info();
+  if (other) run.other = other->info();
   run.full = arguments.full;
   {
     Progress progress("verify");
@@ -91,7 +103,7 @@ int run_verify(const VerifyArguments& arguments) {
     for (const CheckGroup& group : groups) {
       const auto within = [&](double part) { progress.update((done + part * group.full_share) / total); };
       within(0.0);
-      for (CheckResult& result : group.run({device, arguments.device, arguments.kernels, arguments.full, within}))
+      for (CheckResult& result : group.run({device, arguments.device, arguments.kernels, arguments.full, other ? &*other : nullptr, within}))
         run.results.push_back(std::move(result));
       done += group.full_share;
     }
@@ -120,6 +132,8 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("verify", "Check the device's answers against closed forms");
   const auto arguments = std::make_shared<VerifyArguments>();
   command->add_option("--device", arguments->device, "OpenCL device: number or piece of its name, as `vitrum devices` lists")
+      ->type_name("NAME");
+  command->add_option("--against", arguments->against, "Also hold this device's answers against those of --device")
       ->type_name("NAME");
   const auto quick = command->add_flag("--quick", arguments->quick, "Some seconds of checks (the default)");
   command->add_flag("--full", arguments->full, "Minutes of checks: more inputs, larger pictures, more photons")->excludes(quick);

@@ -52,7 +52,9 @@ std::string verify_page(const VerifyRun& run) {
       "td.n{text-align:right}tr.fail{background:#fcc}svg{background:#f6f6f6}figure{margin:1em 0}</style></head><body>\n"
       "<h1>vitrum verify</h1>\n<p>" +
       escaped("vitrum " + std::string(version()) + ", " + run.device.name + ", " + run.device.platform + ", " +
-              run.device.version + ", driver " + run.device.driver) +
+              run.device.version + ", driver " + run.device.driver +
+              (run.other ? ", against " + run.other->name + ", " + run.other->platform + ", driver " + run.other->driver
+                         : "")) +
       printed("; %s, %.1f s: %zu checks, %lld failed.</p>\n", run.full ? "full" : "quick", run.seconds, run.results.size(),
            static_cast<long long>(failed)) +
       "<table><tr><th>check<th>cases<th>worst error<th>bound<th>unit<th><th>where the truth comes from<th>worst input</tr>\n";

@@ -1,6 +1,7 @@
 #pragma once
 // What a run of `vitrum verify` found, and the page that shows it.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@ namespace vitrum {
 
 struct VerifyRun {
   DeviceInfo device;
+  std::optional<DeviceInfo> other;  ///< of --against
   std::vector<CheckResult> results;
   bool full = false;
   double seconds = 0.0;

@@ -106,7 +106,8 @@ std::string opencl_error_name(int code) {
   return std::string(name) + " (" + std::to_string(code) + ")";
 }
 
-Device::Device(const std::string& choice, unsigned group_size) : group_size_(group_size) {
+Device::Device(const std::string& choice, unsigned group_size, unsigned width)
+    : group_size_(group_size), width_(width) {
   const std::vector<cl::Device> devices = all_devices();
   if (devices.empty())
     throw Error({}, "no OpenCL device was found", "install one, for a CPU: apt-get install pocl-opencl-icd");
@@ -137,7 +138,7 @@ Device::Device(const std::string& choice, unsigned group_size) : group_size_(gro
     queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
     // On GPUs the work-items are the lanes.
     const unsigned lanes = info_.is_cpu ? device_.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() : 1;
-    width_ = lanes >= 16 ? 16 : lanes >= 8 ? 8 : lanes >= 4 ? 4 : 1;
+    if (width_ == 0) width_ = lanes >= 16 ? 16 : lanes >= 8 ? 8 : lanes >= 4 ? 4 : 1;
     const size_t largest = device_.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
     group_size_ = static_cast<unsigned>(std::clamp<size_t>(group_size_, 1, largest));
   } catch (const cl::Error& error) {

@@ -60,13 +60,14 @@ class Buffer {
 class Device {
  public:
   /// `choice`: "" takes the first CPU, else the first device; a number as `vitrum devices` counts them, or a piece of
-  /// a device's or platform's name. `group_size`: work-items per group; pictures do not depend on it.
-  explicit Device(const std::string& choice = "", unsigned group_size = 32);
+  /// a device's or platform's name. `group_size`: work-items per group; pictures do not depend on it. `width`: rays per
+  /// work-item, 1, 4, 8 or 16; 0 takes what suits the device.
+  explicit Device(const std::string& choice = "", unsigned group_size = 32, unsigned width = 0);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const { return info_; }
-  /// Rays per work-item that suit the device: kernels/portability.h's WIDTH.
+  /// Rays per work-item: kernels/portability.h's WIDTH.
   unsigned width() const { return width_; }
 
   /// Builds `source`; a failure shows the compiler's log and is our bug or the driver's.
@@ -128,8 +129,8 @@ class Device {
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
-  unsigned width_ = 1;
   unsigned group_size_;
+  unsigned width_;
   std::vector<std::pair<std::string, cl::Event>> launched_;
   std::map<std::string, double> seconds_;
   std::map<std::string, uint64_t> memory_;

@@ -1,6 +1,7 @@
 #include "render/photon_pass.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -143,15 +144,22 @@ struct PhotonPass::State {
       shoot(p, replicate, 0, shot, 1.0 / static_cast<double>(n), {}, 1);
       places.emplace_back();
       for (const cl_float8& photon : photons_of_runs()) places.back().push_back({photon.s[0], photon.s[1], photon.s[2]});
+      // Their order hangs on the device's width, which the radius must not: a random one, by where they are.
+      const auto rank = [](const glm::vec3& place) {
+        const auto bits = [](float x) { return uint64_t{std::bit_cast<uint32_t>(x)}; };
+        return mix_bits(mix_bits(bits(place.x), bits(place.y)), bits(place.z));
+      };
+      std::sort(places.back().begin(), places.back().end(),
+                [&rank](const glm::vec3& a, const glm::vec3& b) { return rank(a) < rank(b); });
       stored.push_back(static_cast<double>(places.back().size()) / shot * static_cast<double>(n));
     }
     // As many of each pair's as is its share of what is stored.
     const double expected = std::accumulate(stored.begin(), stored.end(), 0.0);
     std::vector<glm::vec3> sample;
     for (size_t p = 0; p < pairs.size() && expected > 0.0; ++p) {
-      const auto wanted = std::lround(static_cast<double>(pilot) * stored[p] / expected);
-      const auto taken = std::min<std::ptrdiff_t>(wanted, static_cast<std::ptrdiff_t>(places[p].size()));
-      sample.insert(sample.end(), places[p].begin(), places[p].begin() + taken);
+      const auto wanted = static_cast<size_t>(std::llround(static_cast<double>(pilot) * stored[p] / expected));
+      const size_t taken = std::min(wanted, places[p].size());
+      sample.insert(sample.end(), places[p].begin(), places[p].begin() + static_cast<std::ptrdiff_t>(taken));
     }
     grid.start(sample, static_cast<uint64_t>(expected));
   }

@@ -16,6 +16,7 @@ const std::vector<CheckGroup>& check_groups() {
       {"photons", "balance of power, and caustics of a ball by quadrature", 0.15, check_photons},
       {"lights", "irradiance under each kind of light", 0.1, check_lights},
       {"determinism", "the same bits again, and with other group sizes", 0.05, check_determinism},
+      {"devices", "another device's answers to the same questions, with --against", 0.05, check_devices},
   };
   return groups;
 }

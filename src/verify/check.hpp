@@ -36,6 +36,7 @@ struct CheckContext {
   std::string device_choice;    ///< as --device says it, for a device of another group size
   KernelFiles kernels;
   bool full = false;            ///< minutes of it instead of seconds
+  Device* other = nullptr;      ///< the device of --against; none: the group `devices` has no rows
   std::function<void(double)> progress;  ///< told how much of the group is done, 0 to 1
 };
 

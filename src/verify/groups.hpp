@@ -12,5 +12,6 @@ std::vector<CheckResult> check_geometry(const CheckContext& context);
 std::vector<CheckResult> check_photons(const CheckContext& context);
 std::vector<CheckResult> check_lights(const CheckContext& context);
 std::vector<CheckResult> check_determinism(const CheckContext& context);
+std::vector<CheckResult> check_devices(const CheckContext& context);
 
 }  // namespace vitrum
