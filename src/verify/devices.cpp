@@ -78,7 +78,7 @@ constexpr Output medium_outputs[] = {
 template <size_t outputs>
 void compare(const CheckContext& context, const char* kernel, const Fields& in, const Output (&fields)[outputs],
              const std::function<std::string(uint32_t)>& input, std::vector<CheckResult>& rows) {
-  const CheckContext there{*context.other, "", context.kernels, context.full};
+  const CheckContext there{*context.other, "", context.kernels, context.full, nullptr, [](double) {}};
   const Fields one = FresnelKernel(context, kernel, outputs).run(in);
   const Fields other = FresnelKernel(there, kernel, outputs).run(in);
   for (size_t field = 0; field < outputs; ++field) {
