@@ -84,6 +84,26 @@ TEST_CASE("two glasses that touch face to face meet in one border, in whatever o
   }
 }
 
+TEST_CASE("bodies of one mesh are told apart by their materials, as if each were a mesh") {
+  Scene apart = on_a_table();
+  const uint32_t low = add_glass(apart, 1.33, 3.0), high = add_glass(apart, 1.6, 0.5);
+  Scene together = apart;
+  const Mesh below = box({-0.3f, 0.1f, -0.2f}, {0.3f, 0.2f, 0.2f}, low);
+  const Mesh above = box({-0.3f, 0.2f, -0.2f}, {0.3f, 0.35f, 0.2f}, high);
+  add(apart, below);
+  add(apart, above);
+  Mesh both = below;
+  both.positions.insert(both.positions.end(), above.positions.begin(), above.positions.end());
+  for (const glm::uvec3& t : above.triangles) both.triangles.push_back(t + static_cast<uint32_t>(below.positions.size()));
+  both.materials.insert(both.materials.end(), above.materials.begin(), above.materials.end());
+  add(together, both);
+  REQUIRE(scene_features(together).contacts);
+  REQUIRE(scene_features(together).media_stack);
+  Device device;
+  const std::vector<double> expected = render(apart, device, {}).film.mean("radiance");
+  CHECK(render(together, device, {}).film.mean("radiance") == expected);
+}
+
 TEST_CASE("a liquid that fills its glass up to the very wall, standing on the table") {
   Scene scene = on_a_table();
   const uint32_t liquid = add_glass(scene, 1.33, 4.0, 1), wall = add_glass(scene, 1.5, 0.2, 2);
