@@ -71,12 +71,9 @@ class Gatherer {
     Features features;
     features.caustics = true;
     features.nearest_photons = nearest;
-    const std::string folder = VITRUM_SOURCE_DIR;
-    return cl::Kernel(device_.build("gather_test.cl", "#include \"gather_test.cl\"\n",
-                                    "-cl-std=CL1.2 -I " + folder + "/tests/device -I " +
-                                        (files.folder.empty() ? folder + "/kernels" : files.folder) +
-                                        features.build_options()),
-                      "gather_test");
+    return cl::Kernel(device_.build("checks/gather.cl", kernel_source(files, {"checks/gather.cl"}),
+                                    "-cl-std=CL1.2" + features.build_options()),
+                      "gather_at");
   }
 
   /// Photons as a launch leaves them, in runs that are nearly full.
