@@ -125,11 +125,13 @@ double share_of_bias(const Gathering& gathering, const std::vector<double>& valu
          gathering.mean([&](size_t k) { return expected(k) * expected(k); });
 }
 
+uint32_t replicates_of(const CheckContext& context) { return context.full ? 128 : 48; }
+
 constexpr const char* blunt = "standard error of the estimates";
 
 /// Many estimates from few photons each: their mean is the convolution, and their scatter goes by the number of photons.
 void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<CheckResult>& rows) {
-  const uint32_t replicates = context.full ? 256 : 32, places = 4096;
+  const uint32_t replicates = replicates_of(context), places = 4096;
   constexpr double radius = 0.0125 * height;
   const Scene scene = lamp_over_plane(radius);
   Estimates noise;
@@ -167,8 +169,8 @@ void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<C
 
 /// Many photons within wide radii: the bias is the kernel's second moment times the Laplacian.
 void check_bias(const CheckContext& context, Estimates& unbiased, std::vector<CheckResult>& rows) {
-  const uint32_t replicates = 32;
-  const uint64_t count = context.full ? 4'000'000 : 128'000;
+  const uint32_t replicates = replicates_of(context);
+  const uint64_t count = context.full ? 1'000'000 : 80'000;
   Estimates bias;
   std::vector<std::pair<double, double>> curve;
   for (const double radius : {0.14 * height, 0.2 * height}) {
@@ -197,8 +199,8 @@ void check_bias(const CheckContext& context, Estimates& unbiased, std::vector<Ch
 
 /// Bias of the mean over passes whose radius shrinks.
 void check_progressive(const CheckContext& context, std::vector<CheckResult>& rows) {
-  const uint32_t replicates = 32;
-  const uint64_t passes = context.full ? 256 : 4, count = 32'000;
+  const uint32_t replicates = replicates_of(context);
+  const uint64_t passes = context.full ? 64 : 4, count = 20'000;
   Scene scene = lamp_over_plane(0.2 * height);
   scene.photons.progressive = true;
   Gathering gathering(context, scene, 1024, count);

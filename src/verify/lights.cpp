@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "render/render.hpp"
 #include "verify/estimates.hpp"
@@ -14,7 +15,7 @@ namespace {
 using glm::dvec3;
 
 constexpr double pi = std::numbers::pi;
-constexpr int seeds = 16;                   // their spread is the error
+constexpr uint64_t seeds = 2;               // each of as many replicates as a film holds; their spread is the error
 constexpr double rounding = 2e-6;           // relative: radiance is summed up in floats
 
 /// Where light `light` is: so far from the others that they cast no shadow there.
@@ -63,10 +64,10 @@ double irradiance(size_t light, const dvec3& place) {
   }
 }
 
-std::vector<double> rendered(const CheckContext& context, const Scene& scene) {
+Film rendered(const CheckContext& context, const Scene& scene) {
   RenderOptions options;
   options.kernels = context.kernels;
-  return render(scene, context.device, options).film.mean("radiance");
+  return render(scene, context.device, options).film;
 }
 
 /// Lights without an area: pixel by pixel.
@@ -77,7 +78,7 @@ CheckResult check_points(const CheckContext& context) {
   for (size_t light = 0; light < 2; ++light) {
     Scene scene = white_plane(light, lamp_of(light) * dvec3(1, 0, 1) + dvec3(0.3, 0, 0.1), 2.0, 70, size);
     scene.render.samples = 1;
-    const std::vector<double> radiance = rendered(context, scene);
+    const std::vector<double> radiance = rendered(context, scene).mean("radiance");
     const Camera& camera = scene.camera;
     const dvec3 forward = glm::normalize(camera.look_at - camera.eye);
     const dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
@@ -104,14 +105,17 @@ std::vector<CheckResult> check_lights(const CheckContext& context) {
       const dvec3 place = lamp_of(light) * dvec3(1, 0, 1) + aside;
       // From below the light, and so narrow that the irradiance over the picture is that of its centre, within 1e-6.
       Scene scene = white_plane(light, place, 0.7, 0.02, 16);
-      scene.render.samples = context.full ? 1024 : 64;
+      scene.render.passes = Film::max_replicates;
+      scene.render.samples = Film::max_replicates * (context.full ? 1024 : 128);
       std::vector<double> means;
-      for (int seed = 0; seed < seeds; ++seed) {
-        scene.render.seed = static_cast<uint64_t>(seed);
-        double total = 0.0;
-        const std::vector<double> radiance = rendered(context, scene);
-        for (const double value : radiance) total += value;
-        means.push_back(pi * total / static_cast<double>(radiance.size()) / irradiance(light, place));
+      for (uint64_t seed = 0; seed < seeds; ++seed) {
+        scene.render.seed = seed;
+        const Film film = rendered(context, scene);
+        for (int replicate = 0; replicate < film.replicates(); ++replicate) {
+          const FilmPlane& plane = *film.plane("radiance", replicate);
+          const double total = std::accumulate(plane.sums.begin(), plane.sums.end(), 0.0);
+          means.push_back(pi * total / static_cast<double>(plane.sums.size()) / plane.samples / irradiance(light, place));
+        }
       }
       (light < 5 ? exact : meshes).add(means, 1.0, rounding, printed("%s, at (%g, 0, %g)", names[light], place.x, place.z));
     }
