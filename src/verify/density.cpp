@@ -5,7 +5,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "render/photon_grid.hpp"
 #include "verify/estimates.hpp"
 #include "verify/groups.hpp"
 #include "verify/photon_run.hpp"
@@ -205,10 +204,14 @@ void check_progressive(const CheckContext& context, std::vector<CheckResult>& ro
   scene.photons.progressive = true;
   Gathering gathering(context, scene, 1024, count);
   std::vector<double> expected(gathering.truth.size(), 0.0), shares;
-  for (uint64_t pass = 0; pass < passes; ++pass)
+  double area = 1.0;            // as a multiple of the first pass's
+  for (uint64_t pass = 0; pass < passes; ++pass) {
     for (size_t k = 0; k < expected.size(); ++k)
-      expected[k] += gathering.truth[k].convolved(scene.photons.radius * std::sqrt(progressive_area(pass))) / static_cast<double>(passes);
-  for (size_t k = 0; k < expected.size(); ++k) expected[k] -= gathering.truth[k].value;
+      expected[k] += (gathering.truth[k].convolved(scene.photons.radius * std::sqrt(area)) - gathering.truth[k].value) /
+                     static_cast<double>(passes);
+    const double i = static_cast<double>(pass + 1);
+    area *= (i + 2.0 / 3.0) / (i + 1.0);
+  }
   for (uint32_t replicate = 0; replicate < replicates; ++replicate) {
     std::vector<double> mean(expected.size(), 0.0);
     for (uint64_t pass = 0; pass < passes; ++pass) {
