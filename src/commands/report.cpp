@@ -54,6 +54,7 @@ std::string render_report(const Scene& scene, const Device& device, const Render
                                    {"sampling", name_of(scene.photons.sampling)},
                                    {"estimate", name_of(scene.photons.estimate)},
                                    {"radius_m", result.photon_radius},
+                                   {"progressive", scene.photons.progressive},
                                    {"max_depth", scene.photons.max_depth}};
   json["device"] = {{"name", device.info().name},
                     {"platform", device.info().platform},

@@ -61,6 +61,13 @@ float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wa
   return std::max(static_cast<float>(std::sqrt(r2)), 1e-7f);
 }
 
+double progressive_area(uint64_t pass) {
+  // The product of the ratios, by gamma functions.
+  constexpr double alpha = 2.0 / 3.0;
+  const double i = static_cast<double>(pass) + 1.0;
+  return std::exp(std::lgamma(i + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(i + 1.0));
+}
+
 kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, float radius) {
   const float cell = radius * 1.001f;  // so that rounding never puts a neighbour two cells away
   uint32_t size[3];
@@ -106,10 +113,13 @@ PhotonGrid::Room PhotonGrid::new_room(uint32_t rows) {
   return room;
 }
 
-void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected) {
+void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass) {
   const PhotonSettings& settings = context_.scene.photons;
-  map_.radius = settings.estimate == PhotonEstimate::automatic ? automatic_radius(sample, expected, settings.nearest)
-                                                               : static_cast<float>(settings.radius);
+  if (pass == 0 || !settings.progressive)
+    first_radius_ = settings.estimate == PhotonEstimate::automatic
+                        ? static_cast<double>(automatic_radius(sample, expected, settings.nearest))
+                        : settings.radius;
+  map_.radius = static_cast<float>(settings.progressive ? first_radius_ * std::sqrt(progressive_area(pass)) : first_radius_);
   map_.grid = choose_grid(sample, expected, map_.radius);
   const uint32_t cells = log2_cells(map_.grid);
   const uint32_t log2_buckets =

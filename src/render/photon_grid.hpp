@@ -11,6 +11,12 @@ namespace vitrum {
 /// some photons [m]. The density is that on a surface.
 float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wanted);
 
+/// What a progressive radius has become by pass number `pass`, from 0, as a multiple of its square in pass 0:
+/// r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) for passes i = 1, 2, ... with alpha = 2/3, for which the mean squared error
+/// of the mean over N passes falls fastest, as N^(-2/3). Knaus and Zwicker, "Progressive photon mapping: a probabilistic
+/// approach", ACM Transactions on Graphics 30 (2011).
+double progressive_area(uint64_t pass);
+
 /// A grid of cells a little larger than `radius` [m], as fine as the photons in `sample` need and no finer than their
 /// number `count` makes worthwhile.
 kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, float radius);
@@ -28,8 +34,9 @@ class PhotonGrid {
  public:
   explicit PhotonGrid(const KernelContext& context) : context_(context) {}
 
-  /// Chooses radius and grid from `sample`, places of some photons [m], for a pass that stores about `expected`.
-  void start(std::span<const glm::vec3> sample, uint64_t expected);
+  /// Chooses radius and grid from `sample`, places of some photons [m], for pass number `pass` of the picture, from 0,
+  /// which stores about `expected`. A progressive radius is that of pass 0, shrunk.
+  void start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass);
   const kernel::GridData& grid() const { return map_.grid; }
   /// Buckets of cells, by which the photons of a launch are to be counted.
   uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }
@@ -52,6 +59,7 @@ class PhotonGrid {
 
   KernelContext context_;
   PhotonMap map_;
+  double first_radius_ = 0.0;   ///< [m], before it shrinks
   std::vector<Room> room_;      ///< by bucket
   uint32_t used_rows_ = 0;
   Buffer<uint32_t> places_, next_of_cell_, tasks_, first_task_, first_scratch_, counts_;

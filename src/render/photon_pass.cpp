@@ -134,7 +134,7 @@ struct PhotonPass::State {
   }
 
   /// Chooses the grid for a pass of `count` photons by a few of each pair, which are not counted.
-  void start_grid(uint32_t replicate, uint64_t count) {
+  void start_grid(uint64_t pass, uint32_t replicate, uint64_t count) {
     const uint64_t pilot = pilot_size(count);
     std::vector<std::vector<glm::vec3>> places;
     std::vector<double> stored;                 // of each pair in the pass
@@ -161,7 +161,7 @@ struct PhotonPass::State {
       const size_t taken = std::min(wanted, places[p].size());
       sample.insert(sample.end(), places[p].begin(), places[p].begin() + static_cast<std::ptrdiff_t>(taken));
     }
-    grid.start(sample, static_cast<uint64_t>(expected));
+    grid.start(sample, static_cast<uint64_t>(expected), pass);
   }
 
   /// What the last launch stored.
@@ -209,12 +209,12 @@ uint64_t PhotonPass::capacity(const Device& device) {
   return std::min<uint64_t>(static_cast<uint64_t>(bytes / row), 1u << 28);
 }
 
-void PhotonPass::run(uint32_t replicate, uint64_t before, uint64_t count,
+void PhotonPass::run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_t count,
                      const std::function<void(double)>& progress) {
   State& s = *state_;
   assert(count <= s.capacity);
   const bool nearest = s.context.features.nearest_photons;
-  if (!nearest) s.start_grid(replicate, count);
+  if (!nearest) s.start_grid(pass, replicate, count);
   for (const kernel::LightData& light : s.context.data.lights)
     s.balance.not_aimed += total_power(s.context.data, light);
   std::vector<cl_float8> photons;  // for the tree

@@ -65,8 +65,9 @@ class PhotonPass {
   /// Photons that a single pass can hold on this device.
   static uint64_t capacity(const Device& device);
 
-  /// Emits `count` photons of `replicate`, of which `before` have been emitted already. Reports the fraction done.
-  void run(uint32_t replicate, uint64_t before, uint64_t count, const std::function<void(double)>& progress);
+  /// Emits `count` photons of `replicate`, of which `before` have been emitted already, as pass number `pass` of the
+  /// picture, from 0 and one after the other: a progressive radius goes by it. Reports the fraction done.
+  void run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_t count, const std::function<void(double)>& progress);
 
   /// What the last run left. Valid until the next.
   const PhotonMap& map() const;

@@ -115,7 +115,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     if (photon_pass) {
       const CpuTimer timer(result.cpu_seconds["photon"]);
       const uint64_t count = photons * (pass + 1) / passes - photons * pass / passes;
-      photon_pass->run(replicate, photons_before[replicate], count, [&](double d) { done(photon_share * d); });
+      photon_pass->run(pass, replicate, photons_before[replicate], count, [&](double d) { done(photon_share * d); });
       photons_before[replicate] += count;
       result.photon_radius = photon_pass->map().radius;
       if (wants(View::photons)) {

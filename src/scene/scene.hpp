@@ -207,6 +207,7 @@ struct PhotonSettings {
   double radius = 0.01;                     ///< for fixed_radius [m]
   int nearest = 50;                         ///< k for nearest, at most most_nearest_photons; photons aimed at per estimate for automatic
   double max_radius = 1.0;                  ///< for nearest [m]
+  bool progressive = false;                 ///< the radius shrinks from pass to pass; not for nearest
   int max_depth = 20;                       ///< surfaces that a photon may meet
 };
 

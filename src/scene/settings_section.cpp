@@ -38,7 +38,7 @@ RenderSettings read_render_settings(const TomlTable& table) {
 }
 
 PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& context) {
-  table.check_keys({}, {"count", "sampling", "estimate", "radius", "nearest", "max_radius", "max_depth"});
+  table.check_keys({}, {"count", "sampling", "estimate", "radius", "nearest", "max_radius", "progressive", "max_depth"});
   constexpr uint64_t most_photons = 1'000'000'000'000;
   PhotonSettings settings;
   table.integer("count", settings.count, 1, most_photons);
@@ -53,6 +53,10 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
     table.fail("nearest", "is more than can be searched for (" + std::to_string(most_nearest_photons) + ")",
                "give a smaller number, or use photons.estimate = \"automatic\", which may aim at any number");
   table.length("max_radius", settings.max_radius, positive_length, context.metres_per_unit);
+  table.flag("progressive", settings.progressive);
+  if (settings.progressive && settings.estimate == PhotonEstimate::nearest)
+    table.fail("progressive", "needs a radius that can shrink, which the k nearest photons do not have",
+               "use photons.estimate = \"automatic\" or \"radius\" with it");
   table.integer("max_depth", settings.max_depth, 1, deepest_path);
   return settings;
 }

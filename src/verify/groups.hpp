@@ -10,6 +10,7 @@ std::vector<CheckResult> check_absorption(const CheckContext& context);
 std::vector<CheckResult> check_slab_and_ball(const CheckContext& context);
 std::vector<CheckResult> check_geometry(const CheckContext& context);
 std::vector<CheckResult> check_photons(const CheckContext& context);
+std::vector<CheckResult> check_density(const CheckContext& context);
 std::vector<CheckResult> check_lights(const CheckContext& context);
 std::vector<CheckResult> check_determinism(const CheckContext& context);
 std::vector<CheckResult> check_devices(const CheckContext& context);

@@ -9,7 +9,7 @@
 
 namespace vitrum {
 
-/// A scene that has no meshes, on a device, ready to shoot photons.
+/// A scene on a device, ready to shoot photons.
 class PhotonRun {
  public:
   PhotonRun(const Scene& scene, Device& device, uint64_t largest_pass, const KernelFiles& files = {})
@@ -17,15 +17,22 @@ class PhotonRun {
         device_(device),
         features_(scene_features(scene)),
         data_(scene_data(scene, features_)),
+        tree_(features_.mesh ? build_tree(data_.tree_triangles) : Tree{}),
         kernels_(device, files, {"photons", "photon_sort"}, features_.build_options()),
-        device_scene_(upload(device, data_, features_, nullptr)),
+        device_scene_(upload(device, data_, features_, features_.mesh ? &tree_ : nullptr)),
         pass_(KernelContext{device_, kernels_, scene_, data_, device_scene_, features_}, largest_pass) {}
+
+  /// Shoots `count` photons of `replicate`, behind `before` of them, as pass number `pass` of a picture.
+  void run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_t count) {
+    pass_.run(pass, replicate, before, count, [](double) {});
+  }
+  const PhotonMap& map() const { return pass_.map(); }
 
   /// Shoots `count` photons of `replicate`, behind `before` of them, and returns those that were stored: x, y, z, -,
   /// power r, g, b, - each.
   std::vector<cl_float8> shoot(uint32_t replicate, uint64_t count, uint64_t before = 0) {
-    pass_.run(replicate, before, count, [](double) {});
-    return read_photons(device_, pass_.map());
+    run(0, replicate, before, count);
+    return read_photons(device_, map());
   }
 
   /// Sum over all shots.
@@ -36,6 +43,7 @@ class PhotonRun {
   Device& device_;
   Features features_;
   SceneData data_;
+  Tree tree_;
   Kernels kernels_;
   DeviceScene device_scene_;
   PhotonPass pass_;

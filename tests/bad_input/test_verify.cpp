@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "command_line.hpp"
 
@@ -24,12 +25,18 @@ struct BrokenKernels {
   }
 };
 
-void check_caught(const BrokenKernels& kernels, const std::string& group, const std::string& check) {
-  const Ended run = vitrum_run({"verify", "--only", group, "--kernels", kernels.folder.path()});
+/// Each of `checks` fails; they are of `groups`.
+void check_caught(const BrokenKernels& kernels, const std::vector<std::string>& groups, const std::vector<std::string>& checks) {
+  std::vector<std::string> arguments = {"verify", "--kernels", kernels.folder.path()};
+  for (const std::string& group : groups) arguments.insert(arguments.end(), {"--only", group});
+  const Ended run = vitrum_run(arguments);
   CAPTURE(run.out);
   CAPTURE(run.err);
   CHECK(run.code == 1);
-  CHECK(contains(run.out, "FAIL " + check + ": "));
+  for (const std::string& check : checks) {
+    CAPTURE(check);
+    CHECK(contains(run.out, "FAIL " + check + ": "));
+  }
 }
 
 }  // namespace
@@ -49,11 +56,24 @@ TEST_CASE("verify passes, and its report holds what the table has") {
 }
 
 TEST_CASE("verify catches a wrong formula and names the check") {
-  check_caught({"fresnel.cl", "0.5f * (r * r) * fma(b, b, 1.0f)", "0.5f * (r * r) * fma(b, b, 1.0001f)"}, "interface",
-               "interface/reflectance");
-  check_caught({"fresnel.cl", "-x)) - lost;", "-x));"}, "absorption",
-               "absorption/transmittance");
-  check_caught({"media.h", "top_medium(stack)].sigma_a;", "0].sigma_a;"}, "slab-and-ball", "slab-and-ball/absorbing ball");
+  check_caught({"fresnel.cl", "0.5f * (r * r) * fma(b, b, 1.0f)", "0.5f * (r * r) * fma(b, b, 1.0001f)"}, {"interface"},
+               {"interface/reflectance"});
+  check_caught({"fresnel.cl", "-x)) - lost;", "-x));"}, {"absorption"}, {"absorption/transmittance"});
+  check_caught({"media.h", "top_medium(stack)].sigma_a;", "0].sigma_a;"}, {"slab-and-ball"}, {"slab-and-ball/absorbing ball"});
+}
+
+TEST_CASE("every row that is a matter of chance sees 1 %") {
+  // Of a photon's power, of the irradiance that is gathered, and of that by a lamp.
+  check_caught({"stages/photons.cl", "scale3(share, emission.power)", "scale3(1.01f * share, emission.power)"},
+               {"photons", "density"},
+               {"photons/absorbed in a ball", "photons/reflected by a ball", "photons/encircled flux", "photons/pool",
+                "photons/mesh ball", "photons/emissive mesh", "density/unbiased", "density/bias with radius",
+                "density/noise with count", "density/progressive: bias"});
+  check_caught({"gather_within.h", "(2.0f * 0.318309886183790672f * inverse_r2)", "(1.98f * 0.318309886183790672f * inverse_r2)"},
+               {"density"},
+               {"density/unbiased", "density/bias with radius", "density/noise with count", "density/progressive: bias"});
+  check_caught({"direct_light.h", "scale3(lit ? cos_theta : 0.0f,", "scale3(lit ? 1.01f * cos_theta : 0.0f,"}, {"lights"},
+               {"lights/disc, sphere, quad", "lights/emissive meshes"});
 }
 
 TEST_CASE("verify refuses what it does not know") {

@@ -45,7 +45,7 @@ class Gatherer {
     std::vector<glm::vec3> places;
     for (const cl_float8& p : photons) places.push_back({p.s[0], p.s[1], p.s[2]});
     // As a pass does: room is made for what a few photons promise.
-    grid.start(std::span(places).first(std::min<size_t>(places.size(), 1000)), places.size());
+    grid.start(std::span(places).first(std::min<size_t>(places.size(), 1000)), places.size(), 0);
     for (size_t first = 0; first < photons.size(); first += 5 * run_length)
       grid.add(runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid));
     grid.finish();
@@ -71,12 +71,9 @@ class Gatherer {
     Features features;
     features.caustics = true;
     features.nearest_photons = nearest;
-    const std::string folder = VITRUM_SOURCE_DIR;
-    return cl::Kernel(device_.build("gather_test.cl", "#include \"gather_test.cl\"\n",
-                                    "-cl-std=CL1.2 -I " + folder + "/tests/device -I " +
-                                        (files.folder.empty() ? folder + "/kernels" : files.folder) +
-                                        features.build_options()),
-                      "gather_test");
+    return cl::Kernel(device_.build("checks/gather.cl", kernel_source(files, {"checks/gather.cl"}),
+                                    "-cl-std=CL1.2" + features.build_options()),
+                      "gather_at");
   }
 
   /// Photons as a launch leaves them, in runs that are nearly full.

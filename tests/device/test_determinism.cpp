@@ -25,6 +25,8 @@ const std::vector<Case> cases = {
     {"default_scene", {"film.size=[60, 44]", "render.samples=3", "photons.count=300_000"}},
     {"default_scene", {"film.size=[33, 20]", "render.samples=4", "render.passes=2", "photons.count=70_001",
                        "render.sampling='independent'", "photons.sampling='independent'"}},
+    {"default_scene", {"film.size=[30, 22]", "render.samples=4", "render.passes=4", "photons.count=80_000",
+                       "photons.progressive=true"}},
     {"cornell_glass", {"film.size=[48, 37]", "render.samples=2", "photons.count=100_000"}},
 };
 

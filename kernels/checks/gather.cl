@@ -3,8 +3,8 @@
 #define WIDTH 1
 #include "gather.h"
 
-__kernel void gather_test(const uint count, __global const float* queries PHOTON_MAP_PARAMETERS,
-                          __global float* irradiance) {
+__kernel void gather_at(const uint count, __global const float* queries PHOTON_MAP_PARAMETERS,
+                        __global float* irradiance) {
   const uint i = get_global_id(0);
   if (i >= count) return;
   const PhotonMap map = PHOTON_MAP;
