@@ -9,7 +9,7 @@ namespace vitrum {
 
 /// The radius within which about `wanted` of `count` photons lie around the median photon, judged from `places`, those of
 /// some photons [m]. The density is that on a surface.
-float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wanted);
+float automatic_radius(std::span<const glm::vec3> places, uint64_t count, double wanted);
 
 /// A grid of cells a little larger than `radius` [m], as fine as the photons in `sample` need and no finer than their
 /// number `count` makes worthwhile.
@@ -28,8 +28,10 @@ class PhotonGrid {
  public:
   explicit PhotonGrid(const KernelContext& context) : context_(context) {}
 
-  /// Chooses radius and grid from `sample`, places of some photons [m], for a pass that stores about `expected`.
-  void start(std::span<const glm::vec3> sample, uint64_t expected);
+  /// Chooses radius and grid from `sample`, places of some photons [m], for a pass that stores about `expected`. It has
+  /// the fraction `share` of all photons of the picture: an automatic radius takes in as many of all, so that the number of
+  /// passes does not make it wider.
+  void start(std::span<const glm::vec3> sample, uint64_t expected, double share);
   const kernel::GridData& grid() const { return map_.grid; }
   /// Buckets of cells, by which the photons of a launch are to be counted.
   uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }

@@ -153,7 +153,8 @@ struct PhotonPass::State {
       const auto taken = std::min<std::ptrdiff_t>(wanted, static_cast<std::ptrdiff_t>(places[p].size()));
       sample.insert(sample.end(), places[p].begin(), places[p].begin() + taken);
     }
-    grid.start(sample, static_cast<uint64_t>(expected));
+    grid.start(sample, static_cast<uint64_t>(expected),
+               static_cast<double>(count) / static_cast<double>(context.scene.photons.count));
   }
 
   /// What the last launch stored.
@@ -186,6 +187,7 @@ struct PhotonPass::State {
     balance.photons_direct += run.photons[OUTCOME_DIRECT];
     balance.photons_lost += run.photons[OUTCOME_LOST];
     balance.photons_cut += run.photons[OUTCOME_CUT];
+    balance.photons_rejected += run.rejected;
     balance.surfaces_met += run.surfaces;
   }
 };
