@@ -10,9 +10,12 @@
 #define FILM_DEPTH 13          // [m]
 #define FILM_PLANES 14
 
-// Rays traced, as pairs of low and high half.
+// Rays traced, and of all estimates of irradiance the sums of k and of k (k - 1), k being the number of photons in one; as
+// low and high half.
 #define COUNT_SECONDARY 0
 #define COUNT_SHADOW 2
-#define COUNTS 4
+#define COUNT_GATHERED 4
+#define COUNT_PAIRS 6
+#define COUNTS 8
 
 #endif

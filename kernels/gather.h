@@ -6,9 +6,10 @@
 #include "photon_map.h"
 #include "switches.h"
 
-// Power of photons, eight at a time.
+// Photons and their power, eight at a time.
 typedef struct {
   float8 red, green, blue;
+  int8 minus_count;
 } Sums;
 
 FUNCTION Sums no_sums(void) {
@@ -16,11 +17,17 @@ FUNCTION Sums no_sums(void) {
   sums.red = 0.0f;
   sums.green = 0.0f;
   sums.blue = 0.0f;
+  sums.minus_count = 0;
   return sums;
 }
 
 FUNCTION float sum8(float8 v) {
   return ((v.s0 + v.s4) + (v.s1 + v.s5)) + ((v.s2 + v.s6) + (v.s3 + v.s7));
+}
+
+FUNCTION uint photons_in(const Sums* sums) {
+  const int4 halves = sums->minus_count.lo + sums->minus_count.hi;
+  return (uint)-(halves.s0 + halves.s1 + halves.s2 + halves.s3);
 }
 
 FUNCTION float3 total_power(const Sums* sums) { return (float3)(sum8(sums->red), sum8(sums->green), sum8(sums->blue)); }

@@ -172,6 +172,7 @@ FUNCTION Sums power_within(const PhotonTreeData* tree, __global const float* nod
     if (entry >> LEVEL_SHIFT == 0) {
       __global const float* leaf = leaf_of(leaves, entry);
       const int8 counts = photon_distances(leaf, p, n) <= radius2;
+      sums.minus_count += counts;
       sums.red += counts ? vload8(PHOTON_POWER + 0, leaf) : 0.0f;
       sums.green += counts ? vload8(PHOTON_POWER + 1, leaf) : 0.0f;
       sums.blue += counts ? vload8(PHOTON_POWER + 2, leaf) : 0.0f;
@@ -191,11 +192,13 @@ FUNCTION Sums power_within(const PhotonTreeData* tree, __global const float* nod
 }
 
 // Irradiance [W/m2] at p on the side of the unit normal n: power of the k nearest over the area of the circle around them
-// (Jensen 2001, section 7.2), or of all those within the greatest radius over its circle where they are fewer.
-FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n) {
+// (Jensen 2001, section 7.2), or of all those within the greatest radius over its circle where they are fewer. `photons`:
+// their number.
+FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, uint* photons) {
   const float limit = map->max_radius * map->max_radius;
   const float radius2 = nearest_radius2(&map->tree, map->nodes, map->leaves, p, n, map->nearest, limit);
   const Sums sums = power_within(&map->tree, map->nodes, map->leaves, p, n, radius2);
+  *photons = photons_in(&sums);
   // Where k photons lie in one place, their irradiance is that of a circle of 0.1 um.
   return total_power(&sums) * (0.318309886183790672f / max(radius2, 1e-14f));
 }

@@ -39,6 +39,7 @@ FUNCTION void add_photons(__global const float* map, uint stride, uint first, ui
     if (!any(counts)) continue;
     const int8 packed = as_int8(vload8(0, map + PHOTON_DIRECTION * stride + i));
     counts &= came_to_front(packed, n) & (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
+    sums->minus_count += counts;
     const float8 weight = counts ? nearness : 0.0f;
     // What lies behind the last photon may be no number, which a weight of 0 would not take out.
     const float8 red = vload8(0, map + (PHOTON_POWER + 0) * stride + i);
@@ -51,8 +52,8 @@ FUNCTION void add_photons(__global const float* map, uint stride, uint first, ui
 }
 // [/gather]
 
-// Irradiance [W/m2] at p on the side of the unit normal n.
-FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n) {
+// Irradiance [W/m2] at p on the side of the unit normal n, and the number of `photons` that it is made of.
+FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, uint* photons) {
   const GridData grid = map->grid;
   const float inverse_r2 = 1.0f / (map->radius * map->radius);
   const float max_off_plane = PLANE_SHARE * map->radius;
@@ -84,6 +85,7 @@ FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n) {
       }
     }
   }
+  *photons = photons_in(&sums);
   return total_power(&sums) * (2.0f * 0.318309886183790672f * inverse_r2);
 }
 

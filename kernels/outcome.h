@@ -15,6 +15,7 @@ typedef struct {
   float power[OUTCOMES][3];    // by outcome; red, green, blue
   float power_rest[OUTCOMES][3];
   uint photons[OUTCOMES];      // by outcome
+  uint rejected;               // would have been stored, were they all numbers
   uint surfaces;               // met by all of them
   float low[3], high[3];       // box around the stored [m]
 } PhotonRunData;

@@ -10,5 +10,6 @@ __kernel void gather_at(const uint count, __global const float* queries PHOTON_M
   const PhotonMap map = PHOTON_MAP;
   const float3 p = vload3(2 * i, queries);
   const int reached = within_reach(&map, make_vec3(p.x, p.y, p.z));
-  vstore3(reached ? gathered_irradiance(&map, p, vload3(2 * i + 1, queries)) : (float3)(0.0f), i, irradiance);
+  uint photons;
+  vstore3(reached ? gathered_irradiance(&map, p, vload3(2 * i + 1, queries), &photons) : (float3)(0.0f), i, irradiance);
 }

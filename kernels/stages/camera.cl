@@ -50,9 +50,11 @@ FUNCTION void start_from(const SurfacePacket* surface, const CameraRays* parent,
   child->depth = parent->depth + 1;
 }
 
-FUNCTION void count_rays(__global uint* count, const uint n) {
-  const uint before = atomic_add(&count[0], n);
-  if (before + n < before) atomic_inc(&count[1]);
+FUNCTION void add_count(__global uint* count, const ulong n) {
+  const uint low = (uint)n;
+  const uint before = atomic_add(&count[0], low);
+  const uint high = (uint)(n >> 32) + (before + low < before);
+  if (high > 0) atomic_add(&count[1], high);
 }
 
 // What the first surface is.
@@ -93,6 +95,8 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
                   const uint film_stride, __global float* restrict film, __global uint* restrict counts) {
 #if CAUSTICS != CAUSTICS_NONE
   Vec3 caustics = load_film3(film, FILM_CAUSTICS, film_stride, i);
+  ulong gathered = 0;
+  ulong pairs = 0;
 #endif
   Vec3 beauty = load_film3(film, FILM_BEAUTY, film_stride, i);
   Float cut = LOAD(film, FILM_CUT * film_stride + i);
@@ -120,9 +124,13 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
           camera.active & (max_channel(shading.scattering.diffuse) > 0.0f) & within_reach(&map, surface.position);
       if (map.count > 0 && ANY(receives)) {
         Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
-        FOR_LANES(lane, receives)
+        FOR_LANES(lane, receives) {
+          uint photons;
           set_lane3(&irradiance, lane, gathered_irradiance(&map, LANE3(surface.position, lane),
-                                                           LANE3(shading.scattering.normal, lane)));
+                                                           LANE3(shading.scattering.normal, lane), &photons));
+          gathered += photons;
+          pairs += photons * (photons - (ulong)1);
+        }
         const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));
         radiance = select3(receives, add3(radiance, caustic), radiance);
         caustics = select3(receives, add3(caustics, caustic), caustics);
@@ -152,8 +160,12 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
   store_film3(film, FILM_CAUSTICS, film_stride, i, caustics);
 #endif
   STORE(film, FILM_CUT * film_stride + i, cut);
-  count_rays(counts + COUNT_SECONDARY, secondary_rays);
-  count_rays(counts + COUNT_SHADOW, shadow_rays);
+  add_count(counts + COUNT_SECONDARY, secondary_rays);
+  add_count(counts + COUNT_SHADOW, shadow_rays);
+#if CAUSTICS != CAUSTICS_NONE
+  add_count(counts + COUNT_GATHERED, gathered);
+  add_count(counts + COUNT_PAIRS, pairs);
+#endif
 }
 
 // Samples [first_sample, last_sample) of pixels [first_pixel, last_pixel); first_pixel is a multiple of WIDTH, and the

@@ -111,6 +111,12 @@ FUNCTION Photons take_waiting(Waiting* waiting) {
   return photons;
 }
 
+// Are place, power and direction finite?
+FUNCTION Mask are_numbers(const Photons* photons, const Vec3 arrived) {
+  const Vec3 sum = add3(add3(photons->origin, photons->power), arrived);
+  return fabs(sum.x + sum.y + sum.z) < INFINITY;
+}
+
 // Adds the lanes of `which` to the run's photons, of which there are `stored`. `fields`: the run's piece of the buffer.
 FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Mask which, const GridData grid,
                             const uint run_length, const uint stored, __global float* fields) {
@@ -149,6 +155,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   }
   Uint surfaces = 0;
   uint stored = 0;
+  uint rejected = 0;
   Vec3 low = make_vec3(INFINITY, INFINITY, INFINITY);
   Vec3 high = negate3(low);
   // Those outside of all media and those inside wait apart, since they meet different surfaces.
@@ -180,8 +187,13 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
       const Vec3 arrived = photons.direction;
       const Uint outcome = interact(scene, &surface, max_depth, &photons, &power[OUTCOME_ABSORBED]);
       for (uint k = OUTCOME_ALIVE + 1; k < OUTCOMES; ++k) {
-        const Mask here = outcome == k;
+        Mask here = outcome == k;
         if (!ANY(here)) continue;
+        if (k == OUTCOME_STORED) {
+          const Mask sound = here & are_numbers(&photons, arrived);
+          rejected += lanes_set(here & (sound == 0));
+          here = sound;
+        }
         add_power(&power[k], here, photons.power);
         ended[k] += here ? (Uint)1 : (Uint)0;
         surfaces += here ? photons.depth : (Uint)0;
@@ -220,6 +232,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   uint surfaces_met = 0;
   for (uint lane = 0; lane < WIDTH; ++lane) surfaces_met += LANE(surfaces, uint, lane);
   report->surfaces = surfaces_met;
+  report->rejected = rejected;
   report->low[0] = least_of_lanes(low.x);
   report->low[1] = least_of_lanes(low.y);
   report->low[2] = least_of_lanes(low.z);

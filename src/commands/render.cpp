@@ -31,18 +31,25 @@ struct RenderArguments {
   bool quiet = false;
 };
 
-/// A view's plane of the film as a layer of a picture.
-PictureLayer layer_of(const Film& film, View view) {
+/// What a view shows, pixel by pixel; empty where the scene has nothing for it, such as photons without a caster.
+std::vector<double> values_of(const RenderResult& result, View view) {
+  if (view == View::beauty) return result.film.mean("radiance");
+  if (view == View::cut) return cut_radiance(result.film, result.limit);
+  if (view == View::error) return result.standard_error();
+  return result.film.mean(view_name(view));
+}
+
+/// A view as a layer of a picture.
+PictureLayer layer_of(const RenderResult& result, View view) {
   PictureLayer layer;
   layer.name = view_name(view);
   const bool scalar = view == View::depth || view == View::photons;
   layer.channels = scalar ? 1 : 3;
   layer.is_colour = view != View::depth && view != View::normal;
-  const std::vector<double> mean = film.mean(view == View::beauty ? "radiance" : layer.name);
-  layer.values.assign(mean.begin(), mean.end());
-  // A view that the scene has nothing for, such as photons without a caster, is black.
+  const std::vector<double> values = values_of(result, view);
+  layer.values.assign(values.begin(), values.end());
   if (layer.values.empty())
-    layer.values.assign(static_cast<size_t>(film.width() * film.height() * layer.channels), 0.0f);
+    layer.values.assign(static_cast<size_t>(result.film.width() * result.film.height() * layer.channels), 0.0f);
   if (view == View::photons) {
     // White dots: passes overlay each other. In three channels, so that every format shows them.
     std::vector<float> white;
@@ -96,7 +103,7 @@ void run_render(const RenderArguments& arguments) {
 
   const auto write_start = std::chrono::steady_clock::now();
   std::vector<PictureLayer> layers;
-  for (View view : options.views) layers.push_back(layer_of(result.film, view));
+  for (View view : options.views) layers.push_back(layer_of(result, view));
   const std::map<std::string, std::string> metadata = {
       {"version", version()},
       {"scene", scene.file},
@@ -132,13 +139,15 @@ void add_render_command(CLI::App& app) {
       ->type_name("FILE")
       ->allow_extra_args(false);
   command->add_option("--view", arguments->views,
-                      "What to show: beauty, photons, caustics, albedo, normal, depth (repeatable)")
+                      "What to show (repeatable): beauty, photons, caustics, albedo, normal, depth;\n"
+                      "error: standard error of the beauty, from 8 passes; cut: radiance that max_depth and\n"
+                      "min_weight took, at most; bias: error of the caustics by the photons' radius")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command->add_option("--threads", arguments->threads, "Threads of a CPU device; 0: all")->type_name("N");
   command->add_option("--device", arguments->device, "OpenCL device: number or piece of its name, as `vitrum devices` lists")
       ->type_name("NAME");
-  command->add_option("--report", arguments->report, "Write settings, times, counts and memory as JSON")->type_name("FILE");
+  command->add_option("--report", arguments->report, "Write settings, times, counts, errors and memory as JSON")->type_name("FILE");
   command->add_option("--kernels", arguments->kernels.folder, "Read the kernels from this folder instead of the binary")
       ->type_name("DIR");
   command->add_option("--dump-kernels", arguments->kernels.dump_folder, "Write the kernels as compiled to this folder")

@@ -17,6 +17,45 @@ ordered_json numbers(const Spectrum& s) {
   return values;
 }
 
+/// Mean and greatest magnitude of a picture's values, 3 to a pixel; null where a value is not finite.
+ordered_json summary(const std::vector<double>& values, int width) {
+  double sum = 0.0;
+  size_t worst = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    sum += values[i];
+    if (std::abs(values[i]) > std::abs(values[worst])) worst = i;
+  }
+  const size_t pixel = worst / 3, columns = static_cast<size_t>(width);
+  return {{"mean", sum / static_cast<double>(values.size())},
+          {"worst_pixel", values[worst]},
+          {"pixel", {pixel % columns, pixel / columns}}};
+}
+
+/// What is to be known of the photons' estimate: its radius, its noise and, where its view was asked for, its bias.
+ordered_json photon_estimate(const Scene& scene, const RenderResult& result) {
+  const bool nearest = scene.photons.estimate == PhotonEstimate::nearest;
+  const double photons = result.photons_in_estimate();
+  // Of n photons the circle has the relative error 1 / sqrt(n), Epanechnikov's kernel, whose mean square is 4/3 of its
+  // squared mean, sqrt(4 / (3 n)).
+  const double noise = std::sqrt((nearest ? 1.0 : 4.0 / 3.0) / photons);
+  ordered_json json = {{"radius_m", result.photon_radius},
+                       {"photons", photons},
+                       {"noise", photons > 0.0 ? ordered_json(noise) : ordered_json(nullptr)}};
+  const std::vector<double> bias = result.film.mean("bias"), variance = result.film.variance_of_mean("bias");
+  if (variance.empty()) return json;
+  json["bias"] = summary(bias, result.film.width());
+  // The bias is seen through noise, whose mean square is known.
+  double squares = 0.0, noise_squares = 0.0;
+  for (size_t i = 0; i < bias.size(); ++i) {
+    squares += bias[i] * bias[i];
+    noise_squares += variance[i];
+  }
+  const double count = static_cast<double>(bias.size());
+  json["bias"]["rms"] = std::sqrt(std::max(squares - noise_squares, 0.0) / count);
+  json["bias"]["rms_of_noise"] = std::sqrt(noise_squares / count);
+  return json;
+}
+
 const char* name_of(Sampling sampling) {
   return sampling == Sampling::independent ? "independent" : "low-discrepancy";
 }
@@ -72,17 +111,27 @@ std::string render_report(const Scene& scene, const Device& device, const Render
   if (result.features.caustics) {
     const PhotonBalance& p = result.photons;
     json["photons"] = {{"shot", p.photons_shot},         {"stored", p.photons_stored}, {"absorbed", p.photons_absorbed},
-                       {"direct", p.photons_direct},     {"lost", p.photons_lost},     {"cut", p.photons_cut}};
+                       {"direct", p.photons_direct},     {"lost", p.photons_lost},     {"cut", p.photons_cut},
+                       {"rejected", p.photons_rejected}};
     json["photon_power_watts"] = {{"shot", numbers(p.shot)},     {"stored", numbers(p.stored)},
                                   {"absorbed", numbers(p.absorbed)}, {"direct", numbers(p.direct)},
                                   {"lost", numbers(p.lost)},     {"cut", numbers(p.cut)},
                                   {"not_aimed", numbers(p.not_aimed)}};
+    json["photon_estimate"] = photon_estimate(scene, result);
   }
   const std::vector<double> cut = result.film.mean("cut");
   double sum = 0.0;
   for (double value : cut) sum += value;
   json["cut_weight"] = {{"mean", cut.empty() ? 0.0 : sum / static_cast<double>(cut.size())},
                         {"worst_pixel", cut.empty() ? 0.0 : *std::max_element(cut.begin(), cut.end())}};
+  json["cut_radiance"] = summary(cut_radiance(result.film, result.limit), result.film.width());
+  json["cut_radiance"]["limit"] = numbers(result.limit.radiance);
+  json["cut_radiance"]["is_bound"] = result.limit.is_bound;
+  if (const std::vector<double> error = result.standard_error(); !error.empty()) {
+    json["standard_error"] = summary(error, result.film.width());
+    json["standard_error"]["degrees_of_freedom"] = result.film.replicates() - 1;
+  }
+  json["rejected_values"] = result.rejected_values;
   json["memory_bytes"] = result.memory;
   return json.dump(2) + "\n";
 }

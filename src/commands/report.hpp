@@ -7,7 +7,8 @@
 
 namespace vitrum {
 
-/// Settings, device, features, times by stage, counts, memory, and energy cut away.
+/// Settings, device, features, times by stage, counts, memory, what the limits cut away, and errors as far as known
+/// (docs/report.md).
 std::string render_report(const Scene& scene, const Device& device, const RenderResult& result);
 
 }  // namespace vitrum

@@ -1,6 +1,7 @@
 #include "film/film.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <set>
 
 #include "core/error.hpp"
@@ -15,15 +16,24 @@ std::size_t Film::values_of(int channels) const {
   return std::size_t(width_) * std::size_t(height_) * std::size_t(channels);
 }
 
-void Film::add(uint64_t pass, const std::string& name, int channels, std::span<const float> values, double samples) {
+uint64_t Film::add(uint64_t pass, const std::string& name, int channels, std::span<const float> values, double samples) {
   assert(channels >= 1 && values.size() == values_of(channels) && samples > 0);
   const auto [place, is_new] =
-      planes_[pass % planes_.size()].try_emplace(name, FilmPlane{name, channels, 0, std::vector<double>()});
+      planes_[pass % planes_.size()].try_emplace(name, FilmPlane{name, channels, 0, {}, {}});
   FilmPlane& plane = place->second;
   assert(plane.channels == channels);
   if (is_new) plane.sums.resize(values_of(channels), 0.0);
-  for (std::size_t i = 0; i < values.size(); ++i) plane.sums[i] += values[i];
+  uint64_t rejected = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) {
+      plane.sums[i] += values[i];
+    } else {
+      plane.rejected[i] += samples;
+      ++rejected;
+    }
+  }
   plane.samples += samples;
+  return rejected;
 }
 
 std::vector<std::string> Film::names() const {
@@ -40,37 +50,43 @@ const FilmPlane* Film::plane(const std::string& name, int replicate) const {
   return found == planes.end() ? nullptr : &found->second;
 }
 
+std::vector<const FilmPlane*> Film::parts(const std::string& name) const {
+  std::vector<const FilmPlane*> found;
+  for (int r = 0; r < replicates(); ++r)
+    if (const FilmPlane* part = plane(name, r)) found.push_back(part);
+  return found;
+}
+
 std::vector<double> Film::mean(const std::string& name) const {
-  std::vector<double> sums;
-  double samples = 0;
-  for (int r = 0; r < replicates(); ++r) {
-    const FilmPlane* part = plane(name, r);
-    if (!part) continue;
-    sums.resize(part->sums.size(), 0.0);
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += part->sums[i];
-    samples += part->samples;
+  const std::vector<const FilmPlane*> all = parts(name);
+  std::vector<double> means(all.empty() ? 0 : all.front()->sums.size());
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    double sum = 0, samples = 0;
+    for (const FilmPlane* part : all) {
+      sum += part->sums[i];
+      samples += part->samples_of(i);
+    }
+    means[i] = sum / samples;
   }
-  for (double& sum : sums) sum /= samples;
-  return sums;
+  return means;
 }
 
 std::vector<double> Film::variance_of_mean(const std::string& name) const {
-  const std::vector<double> centre = mean(name);
-  std::vector<double> variance(centre.size(), 0.0);
-  double samples = 0;
-  int filled = 0;
-  for (int r = 0; r < replicates(); ++r) {
-    const FilmPlane* part = plane(name, r);
-    if (!part) continue;
-    for (std::size_t i = 0; i < variance.size(); ++i) {
-      const double deviation = part->sums[i] / part->samples - centre[i];
-      variance[i] += part->samples * deviation * deviation;
+  const std::vector<const FilmPlane*> all = parts(name);
+  if (all.size() < 2) return {};
+  std::vector<double> variance = mean(name);
+  for (std::size_t i = 0; i < variance.size(); ++i) {
+    double samples = 0, sum = 0;
+    for (const FilmPlane* part : all) samples += part->samples_of(i);
+    for (const FilmPlane* part : all) {
+      const double share = part->samples_of(i) / samples;
+      if (share == 0) continue;
+      const double deviation = share * (part->sums[i] / part->samples_of(i) - variance[i]);
+      // Of a single replicate 0 / 0, which is no number.
+      sum += deviation * deviation / (1 - share);
     }
-    samples += part->samples;
-    ++filled;
+    variance[i] = sum;
   }
-  if (filled < 2) return {};
-  for (double& value : variance) value /= (filled - 1) * samples;
   return variance;
 }
 
@@ -92,6 +108,7 @@ void Film::merge(const Film& other) {
       if (is_new) continue;
       FilmPlane& ours = place->second;
       for (std::size_t i = 0; i < ours.sums.size(); ++i) ours.sums[i] += theirs.sums[i];
+      for (const auto& [i, samples] : theirs.rejected) ours.rejected[i] += samples;
       ours.samples += theirs.samples;
     }
   }

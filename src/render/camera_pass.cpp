@@ -106,10 +106,10 @@ std::vector<float> CameraPass::take_film() {
   return planes;
 }
 
-RayCounts CameraPass::counts() const {
+CameraCounts CameraPass::counts() const {
   const std::vector<uint32_t> halves = state_->context.device.read(state_->counts, 0, COUNTS);
   const auto whole = [&halves](size_t i) { return uint64_t{halves[i + 1]} << 32 | halves[i]; };
-  return {state_->camera_rays, whole(COUNT_SECONDARY), whole(COUNT_SHADOW)};
+  return {state_->camera_rays, whole(COUNT_SECONDARY), whole(COUNT_SHADOW), whole(COUNT_GATHERED), whole(COUNT_PAIRS)};
 }
 
 }  // namespace vitrum

@@ -10,11 +10,13 @@ namespace vitrum {
 
 struct PhotonMap;
 
-/// Rays by what they are.
-struct RayCounts {
-  uint64_t camera = 0;          ///< from the eye
-  uint64_t secondary = 0;       ///< reflected and refracted
+/// Rays by what they are, and what was gathered for them.
+struct CameraCounts {
+  uint64_t camera = 0;          ///< rays from the eye
+  uint64_t secondary = 0;       ///< rays reflected and refracted
   uint64_t shadow = 0;
+  uint64_t gathered = 0;        ///< photons, summed over all estimates of irradiance
+  uint64_t gathered_pairs = 0;  ///< sum of k (k - 1) over all estimates of k photons
 };
 
 /// Traces camera rays pass by pass; keeps its buffers between passes.
@@ -32,7 +34,7 @@ class CameraPass {
   /// The film's sums since the last call, plane after plane of width * height values (kernels/film.h), and clears them.
   std::vector<float> take_film();
 
-  RayCounts counts() const;
+  CameraCounts counts() const;
 
  private:
   struct State;

@@ -38,7 +38,7 @@ uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p) {
          coordinate(p.x, grid.log2_x);
 }
 
-float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wanted) {
+float automatic_radius(std::span<const glm::vec3> places, uint64_t count, double wanted) {
   if (places.size() < 16) return 0.01f;
   std::vector<glm::vec3> sample;
   for (size_t i = 0; i < places.size(); i += (places.size() + judging_places - 1) / judging_places)
@@ -113,11 +113,11 @@ PhotonGrid::Room PhotonGrid::new_room(uint32_t rows) {
   return room;
 }
 
-void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass) {
+void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass, double share) {
   const PhotonSettings& settings = context_.scene.photons;
   if (pass == 0 || !settings.progressive)
     first_radius_ = settings.estimate == PhotonEstimate::automatic
-                        ? static_cast<double>(automatic_radius(sample, expected, settings.nearest))
+                        ? static_cast<double>(automatic_radius(sample, expected, settings.nearest * share))
                         : settings.radius;
   map_.radius = static_cast<float>(settings.progressive ? first_radius_ * std::sqrt(progressive_area(pass)) : first_radius_);
   map_.grid = choose_grid(sample, expected, map_.radius);

@@ -9,7 +9,7 @@ namespace vitrum {
 
 /// The radius within which about `wanted` of `count` photons lie around the median photon, judged from `places`, those of
 /// some photons [m]. The density is that on a surface.
-float automatic_radius(std::span<const glm::vec3> places, uint64_t count, int wanted);
+float automatic_radius(std::span<const glm::vec3> places, uint64_t count, double wanted);
 
 /// What a progressive radius has become by pass number `pass`, from 0, as a multiple of its square in pass 0:
 /// r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) for passes i = 1, 2, ... with alpha = 2/3, for which the mean squared error
@@ -35,8 +35,9 @@ class PhotonGrid {
   explicit PhotonGrid(const KernelContext& context) : context_(context) {}
 
   /// Chooses radius and grid from `sample`, places of some photons [m], for pass number `pass` of the picture, from 0,
-  /// which stores about `expected`. A progressive radius is that of pass 0, shrunk.
-  void start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass);
+  /// which stores about `expected`. It has the fraction `share` of all photons of the picture: an automatic radius takes in
+  /// as many of all, so that the number of passes does not make it wider. A progressive radius is that of pass 0, shrunk.
+  void start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass, double share);
   const kernel::GridData& grid() const { return map_.grid; }
   /// Buckets of cells, by which the photons of a launch are to be counted.
   uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }

@@ -161,7 +161,8 @@ struct PhotonPass::State {
       const size_t taken = std::min(wanted, places[p].size());
       sample.insert(sample.end(), places[p].begin(), places[p].begin() + static_cast<std::ptrdiff_t>(taken));
     }
-    grid.start(sample, static_cast<uint64_t>(expected), pass);
+    grid.start(sample, static_cast<uint64_t>(expected), pass,
+               static_cast<double>(count) / static_cast<double>(context.scene.photons.count));
   }
 
   /// What the last launch stored.
@@ -194,6 +195,7 @@ struct PhotonPass::State {
     balance.photons_direct += run.photons[OUTCOME_DIRECT];
     balance.photons_lost += run.photons[OUTCOME_LOST];
     balance.photons_cut += run.photons[OUTCOME_CUT];
+    balance.photons_rejected += run.rejected;
     balance.surfaces_met += run.surfaces;
   }
 };

@@ -21,6 +21,7 @@ struct PhotonBalance {
   Spectrum not_aimed{0.0};      ///< sent by the lights elsewhere; infinite where a light has no finite power
   uint64_t photons_shot = 0, photons_stored = 0, photons_absorbed = 0, photons_direct = 0, photons_lost = 0;
   uint64_t photons_cut = 0;
+  uint64_t photons_rejected = 0;  ///< not stored since their place, direction or power is not finite; none expected
   uint64_t surfaces_met = 0;    ///< rays traced
 };
 

@@ -3,9 +3,12 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <span>
 
 #include "core/log.hpp"
+#include "core/printed.hpp"
 #include "core/progress.hpp"
 #include "core/suggest.hpp"
 #include "render/photon_dots.hpp"
@@ -13,7 +16,8 @@
 namespace vitrum {
 namespace {
 
-constexpr View all_views[] = {View::beauty, View::photons, View::caustics, View::albedo, View::normal, View::depth};
+constexpr View all_views[] = {View::beauty, View::photons, View::caustics, View::albedo, View::normal,
+                              View::depth,  View::error,   View::cut,      View::bias};
 
 // Samples that are summed in float on the device before the film takes them over in double.
 constexpr uint32_t samples_per_download = 32;
@@ -51,6 +55,17 @@ std::vector<float> interleaved(const std::vector<float>& planes, size_t pixels, 
 
 }  // namespace
 
+std::vector<double> RenderResult::standard_error() const {
+  std::vector<double> error = film.variance_of_mean("radiance");
+  for (double& value : error) value = std::sqrt(value);
+  return error;
+}
+
+double RenderResult::photons_in_estimate() const {
+  if (rays.gathered == 0) return 0.0;
+  return static_cast<double>(rays.gathered_pairs) / static_cast<double>(rays.gathered) * passes;
+}
+
 const char* view_name(View view) {
   switch (view) {
     case View::beauty: return "beauty";
@@ -59,6 +74,9 @@ const char* view_name(View view) {
     case View::albedo: return "albedo";
     case View::normal: return "normal";
     case View::depth: return "depth";
+    case View::error: return "error";
+    case View::cut: return "cut";
+    case View::bias: return "bias";
   }
   return "";
 }
@@ -80,6 +98,13 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   const auto wants = [&](View view) {
     return std::find(options.views.begin(), options.views.end(), view) != options.views.end();
   };
+  for (const View view : {View::error, View::bias})
+    if (wants(view) && scene.render.samples < 2)
+      throw Error({std::string("--view ") + view_name(view)}, "one sample a pixel has no scatter",
+                  "take at least --samples 2; 8 and their multiples tell the error best");
+  if (wants(View::bias) && features.nearest_photons)
+    throw Error({"--view bias"}, "the bias of the k nearest photons is not known",
+                "take photons.estimate \"automatic\" or \"radius\"");
   const SceneData data = scene_data(scene, features);
   Tree tree;
   if (features.mesh) tree = build_tree(data.tree_triangles);
@@ -96,6 +121,8 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   // A pass holds no more photons than the device has room for.
   uint64_t passes = static_cast<uint64_t>(scene.render.passes);
   if (photons > 0) passes = std::max(passes, (photons + PhotonPass::capacity(device) - 1) / PhotonPass::capacity(device));
+  // Each replicate needs a pass.
+  if (wants(View::error) || wants(View::bias)) passes = std::max<uint64_t>(passes, Film::max_replicates);
   passes = std::min<uint64_t>(passes, samples);
   result.passes = static_cast<int>(passes);
   const int replicates = static_cast<int>(std::min<uint64_t>(passes, Film::max_replicates));
@@ -104,6 +131,8 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   const bool first_hits = wants(View::albedo) || wants(View::normal) || wants(View::depth);
 
   CameraPass camera(context, first_hits);
+  std::unique_ptr<CameraPass> narrow_camera;  // gathers within a smaller radius
+  if (wants(View::bias) && photons > 0) narrow_camera = std::make_unique<CameraPass>(context, false);
   std::unique_ptr<PhotonPass> photon_pass;
   if (photons > 0) photon_pass = std::make_unique<PhotonPass>(context, (photons + passes - 1) / passes);
   std::vector<uint64_t> photons_before(static_cast<size_t>(replicates), 0);
@@ -117,7 +146,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
       const uint64_t count = photons * (pass + 1) / passes - photons * pass / passes;
       photon_pass->run(pass, replicate, photons_before[replicate], count, [&](double d) { done(photon_share * d); });
       photons_before[replicate] += count;
-      result.photon_radius = photon_pass->map().radius;
+      result.photon_radius += static_cast<double>(photon_pass->map().radius) / static_cast<double>(passes);
       if (wants(View::photons)) {
         result.film.add(pass, "photons", 1, photon_dots(read_photons(device, photon_pass->map()), data.camera), 1.0);
       }
@@ -138,7 +167,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
       });
       const std::vector<float> planes = camera.take_film();
       const auto add = [&](const char* name, size_t plane, int channels) {
-        result.film.add(pass, name, channels, interleaved(planes, pixels, plane, channels), count);
+        result.rejected_values += result.film.add(pass, name, channels, interleaved(planes, pixels, plane, channels), count);
       };
       add("radiance", FILM_BEAUTY, 3);
       add("cut", FILM_CUT, 1);
@@ -146,6 +175,16 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
       if (wants(View::albedo)) add("albedo", FILM_ALBEDO, 3);
       if (wants(View::normal)) add("normal", FILM_NORMAL, 3);
       if (wants(View::depth)) add("depth", FILM_DEPTH, 1);
+      if (narrow_camera) {
+        // The bias of Epanechnikov's kernel goes as the square of the radius: half of it is half as much.
+        PhotonMap narrow = photon_pass->map();
+        narrow.radius *= std::numbers::sqrt2_v<float> / 2.0f;
+        narrow_camera->run(replicate, sample, count, samples, &narrow, [](double) {});
+        const std::vector<float> less = interleaved(narrow_camera->take_film(), pixels, FILM_CAUSTICS, 3);
+        std::vector<float> bias = interleaved(planes, pixels, FILM_CAUSTICS, 3);
+        for (size_t i = 0; i < bias.size(); ++i) bias[i] = 2.0f * (bias[i] - less[i]);
+        result.rejected_values += result.film.add(pass, "bias", 3, bias, count);
+      }
     }
   }
   if (photon_pass) {
@@ -157,6 +196,13 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
       result.photons.*power /= static_cast<double>(passes);
   }
   result.rays = camera.counts();
+  result.limit = radiance_limit(scene, static_cast<double>(data.eye_index), result.film);
+  const uint64_t rejected_photons = result.photons.photons_rejected;
+  if (result.rejected_values + rejected_photons > 0)
+    warn({}, printed("%llu values of the picture and %llu photons were not finite and are left out: a fault of vitrum's; "
+                     "please report it with the scene",
+                     static_cast<unsigned long long>(result.rejected_values),
+                     static_cast<unsigned long long>(rejected_photons)));
   for (const auto& [stage, seconds] : device.stage_seconds()) result.seconds[stage] = seconds;
   result.memory = device.memory_by_purpose();
   return result;
