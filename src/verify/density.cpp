@@ -1,5 +1,5 @@
-// The density estimate: irradiance from the photons around a place. Its mean, its bias with the radius, its noise with the
-// number of photons, and a radius that shrinks from pass to pass, with independent photons against theory.
+// The density estimate: irradiance from the photons around a place. Its mean, its bias with the radius, its noise with
+// the number of photons, and a radius that shrinks from pass to pass, with independent photons against theory.
 
 #include <cmath>
 #include <numbers>
@@ -17,11 +17,12 @@ constexpr double pi = std::numbers::pi;
 // What floats may take a sum of photons off the truth, relative.
 constexpr double rounding = 2e-6;
 
-// A lamp over a ball of air: photons spread evenly over a cone of directions, in which the plane has the lamp's irradiance.
-constexpr double lamp_distance = 1.25;                        // from the ball's centre [m]
-constexpr double height = lamp_distance + 2.0;                // of the lamp above the plane [m]
-constexpr double cone_power = 0.5 * (1.0 - 0.6);              // of the lamp's 1 W: the ball fills a cone of cosine .6
-constexpr double reach = 0.95 * height;                       // places are so far from the axis; the cone's end is at 4/3 height
+// A lamp over a ball of air: photons spread evenly over a cone of directions, in which the plane has the lamp's
+// irradiance.
+constexpr double lamp_distance = 1.25;            // from the ball's centre [m]
+constexpr double height = lamp_distance + 2.0;    // of the lamp above the plane [m]
+constexpr double cone_power = 0.5 * (1.0 - 0.6);  // of the lamp's 1 W: the ball fills a cone of cosine .6
+constexpr double reach = 0.95 * height;           // places are so far from the axis; the cone ends at 4/3 of the height
 
 Scene lamp_over_plane(double radius) {
   // The other channels only give it the features of the group `photons`, so that kernels are compiled once for both.
@@ -47,15 +48,15 @@ struct Irradiance {
     bilaplacian = scale * (9 * laplacian_of(2.5) - 15 * h2 * laplacian_of(3.5));
   }
 
-  /// Convolved with Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), by its moments: what is left out is of order r^6,
-  /// 1.4e-5 of the value at a fifth of the height.
+  /// Convolved with Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), by its moments: what is left out is of order
+  /// r^6, 1.4e-5 of the value at a fifth of the height.
   double convolved(double radius) const {
     const double r2 = radius * radius;
     return value + r2 / 12 * laplacian + r2 * r2 / 384 * bilaplacian;
   }
 
-  /// Variance of an estimate by `count` independent photons of the same power: that times the convolution with the kernel's
-  /// square, by its moments, less the square of the mean over the count.
+  /// Variance of an estimate by `count` independent photons of the same power: that times the convolution with the
+  /// kernel's square, by its moments, less the square of the mean over the count.
   double variance(double radius, double count) const {
     const double r2 = radius * radius, mean = convolved(radius);
     return cone_power / count * 4 / (3 * pi * r2) * (value + r2 / 16 * laplacian) - mean * mean / count;
@@ -124,7 +125,7 @@ double share_of_bias(const Gathering& gathering, const std::vector<double>& valu
          gathering.mean([&](size_t k) { return expected(k) * expected(k); });
 }
 
-uint32_t replicates_of(const CheckContext& context) { return context.full ? 128 : 48; }
+uint32_t replicates_of(const CheckContext& context) { return context.full ? 192 : 48; }
 
 constexpr const char* blunt = "standard error of the estimates";
 
@@ -153,14 +154,15 @@ void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<C
     unbiased.add(means, 1.0, rounding, what);
     noise.add(squares, 1.0, rounding, what);
     const Irradiance axis(0.0);
-    const double n = static_cast<double>(count), scatter = std::accumulate(squares.begin(), squares.end(), 0.0) / replicates;
+    const double n = static_cast<double>(count);
+    const double scatter = std::accumulate(squares.begin(), squares.end(), 0.0) / replicates;
     curve.emplace_back(axis.value * pi * radius * radius * n / cone_power,
                        std::sqrt(scatter * axis.variance(radius, n)) / axis.value);
   }
   noise.add(all, 1.0, rounding, "all numbers of photons");
   const size_t first = rows.size();
-  noise.rows("density/noise with count", "variance over 4/(3 k) E^2 and its terms of higher order", context.full ? 0.003 : 0.01,
-             "of the variance", blunt, rows);
+  noise.rows("density/noise with count", "variance over 4/(3 k) E^2 and its terms of higher order",
+             context.full ? 0.003 : 0.01, "of the variance", blunt, rows);
   rows[first].curve = curve;
   rows[first].curve_input = "photons within the radius";
   rows[first].logarithmic = true;
@@ -189,8 +191,8 @@ void check_bias(const CheckContext& context, Estimates& unbiased, std::vector<Ch
                                    std::accumulate(shares.begin(), shares.end(), 0.0) / replicates);
   }
   const size_t first = rows.size();
-  bias.rows("density/bias with radius", "r^2 lap(E) / 12 + r^4 lap(lap(E)) / 384", context.full ? 0.02 : 0.2, "of the bias", blunt,
-            rows);
+  bias.rows("density/bias with radius", "r^2 lap(E) / 12 + r^4 lap(lap(E)) / 384", context.full ? 0.02 : 0.2,
+            "of the bias", blunt, rows);
   rows[first].curve = curve;
   rows[first].curve_input = "radius [m]";
   rows[first].logarithmic = true;
@@ -222,8 +224,8 @@ void check_progressive(const CheckContext& context, std::vector<CheckResult>& ro
   }
   Estimates bias;
   bias.add(shares, 1.0, 1e-3, printed("%llu passes", static_cast<unsigned long long>(passes)));
-  bias.rows("density/progressive: bias", "r_(i+1)^2 / r_i^2 = (i + 2/3) / (i + 1)", context.full ? 0.05 : 0.2, "of the bias", blunt,
-            rows);
+  bias.rows("density/progressive: bias", "r_(i+1)^2 / r_i^2 = (i + 2/3) / (i + 1)", context.full ? 0.05 : 0.2,
+            "of the bias", blunt, rows);
 }
 
 /// Mean squared error of the mean over passes, where the noise is most of it: a fixed radius would give -1. The first
@@ -265,8 +267,8 @@ std::vector<CheckResult> check_density(const CheckContext& context) {
   check_bias(context, unbiased, others);
   check_progressive(context, others);
   check_slope(context, others);
-  unbiased.rows("density/unbiased", "irradiance convolved with Epanechnikov's kernel", context.full ? 8e-4 : 2.5e-3, "relative", blunt,
-                rows);
+  unbiased.rows("density/unbiased", "irradiance convolved with Epanechnikov's kernel", context.full ? 8e-4 : 2.5e-3,
+                "relative", blunt, rows);
   rows.insert(rows.end(), others.begin(), others.end());
   return rows;
 }

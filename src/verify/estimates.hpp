@@ -45,10 +45,10 @@ class Estimates {
     largest_error_ = std::max(largest_error_, std::isnan(error) ? std::numeric_limits<double>::infinity() : error);
   }
 
-  /// A row of significance: Student's test of each estimate with Sidak's correction. And a row `NAME: error`, which shows
-  /// how small a fault the test could see: the largest standard error, up to `error_bound` in `error_unit`.
-  void rows(const std::string& name, const char* truth, double error_bound, const char* error_unit, const char* error_truth,
-            std::vector<CheckResult>& rows) const {
+  /// A row of significance: Student's test of each estimate with Sidak's correction. And a row `NAME: error`, which
+  /// shows how small a fault the test could see: the largest standard error, up to `error_bound` in `error_unit`.
+  void rows(const std::string& name, const char* truth, double error_bound, const char* error_unit,
+            const char* error_truth, std::vector<CheckResult>& rows) const {
     rows.push_back({name, worst_.cases, worst_.error,
                     student_limit(sidak_level(false_alarm, worst_.cases), static_cast<double>(replicates_ - 1)),
                     "standard errors", truth, where_});

@@ -114,7 +114,8 @@ std::vector<CheckResult> check_lights(const CheckContext& context) {
         for (int replicate = 0; replicate < film.replicates(); ++replicate) {
           const FilmPlane& plane = *film.plane("radiance", replicate);
           const double total = std::accumulate(plane.sums.begin(), plane.sums.end(), 0.0);
-          means.push_back(pi * total / static_cast<double>(plane.sums.size()) / plane.samples / irradiance(light, place));
+          const double mean = total / static_cast<double>(plane.sums.size()) / plane.samples;
+          means.push_back(pi * mean / irradiance(light, place));
         }
       }
       (light < 5 ? exact : meshes).add(means, 1.0, rounding, printed("%s, at (%g, 0, %g)", names[light], place.x, place.z));

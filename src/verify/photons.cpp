@@ -1,5 +1,5 @@
-// Photons by themselves: what becomes of their power, and where it lands, against integrals over the ball, over the lamp's
-// directions above a pool, and over an emissive mesh.
+// Photons by themselves: what becomes of their power, and where it lands, against integrals over the ball, over the
+// lamp's directions above a pool, and over an emissive mesh.
 
 #include <algorithm>
 #include <array>
@@ -60,8 +60,8 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The ball as a mesh of 4 rings (rings - 1) facets with the ball's normals. Its poles stand askew to the axis of the light:
-/// or else a circle around that axis would meet all facets of a ring alike.
+/// The ball as a mesh of 4 rings (rings - 1) facets with the ball's normals. Its poles stand askew to the axis of the
+/// light: or else a circle around that axis would meet all facets of a ring alike.
 Scene mesh_ball_over_plane(double index, const Spectrum& sigma_a, double light_distance, int rings) {
   Scene scene = ball_over_plane(index, sigma_a, light_distance);
   Mesh mesh = mesh_ball({0, 0, 0}, 1.0, rings, 2 * rings, true, 0);
@@ -84,7 +84,7 @@ class PhotonChecks {
 
   void ball(double index, const Spectrum& sigma_a, double light_distance) {
     const std::string what = printed("n = %g, light at %g m", index, light_distance);
-    const Landed landed = shoot(ball_over_plane(index, sigma_a, light_distance), count_, {radii.begin(), radii.end()}, what);
+    const Landed landed = shoot(ball_over_plane(index, sigma_a, light_distance), count_, all_radii(), what);
     for (int c = 0; c < 3; ++c) {
       const reference::BallOnAxis truth{1.0, index, sigma_a[c], 2.0, light_distance};
       const std::string channel = what + printed(", sigma_a = %g", sigma_a[c]);
@@ -108,28 +108,31 @@ class PhotonChecks {
     const uint64_t seed = runs_;
     const auto landed = [&](int rings) {
       runs_ = seed;
-      return shoot(mesh_ball_over_plane(index, sigma_a, light_distance, rings), mesh_count_, {radii.begin(), radii.end()}, what);
+      return shoot(mesh_ball_over_plane(index, sigma_a, light_distance, rings), mesh_count_, all_radii(), what);
     };
     const Landed coarse = landed(fine_rings_ / 2), fine = landed(fine_rings_);
     if (std::isinf(light_distance)) add_deviation(fine_rings_ / 2, coarse, index, sigma_a);
     for (int c = 0; c < 3; ++c) {
       const reference::BallOnAxis truth{1.0, index, sigma_a[c], 2.0, light_distance};
       const std::string channel = what + printed(", sigma_a = %g", sigma_a[c]);
-      mesh_.add(extrapolated(coarse.absorbed[c], fine.absorbed[c]), reference::absorbed_flux(truth), rounding, channel + ", absorbed");
+      mesh_.add(extrapolated(coarse.absorbed[c], fine.absorbed[c]), reference::absorbed_flux(truth), rounding,
+                channel + ", absorbed");
       for (size_t k = 0; k < radii.size(); ++k)
         mesh_.add(extrapolated(coarse.within[k][c], fine.within[k][c]),
-                  reference::encircled_flux(truth, radii[k], reference::Orders::all), rounding, channel + printed(", r < %g m", radii[k]));
-      mesh_.add(extrapolated(coarse.stored[c], fine.stored[c]), reference::encircled_flux(truth, infinity, reference::Orders::all),
-                rounding, channel + ", all of the plane");
+                  reference::encircled_flux(truth, radii[k], reference::Orders::all), rounding,
+                  channel + printed(", r < %g m", radii[k]));
+      mesh_.add(extrapolated(coarse.stored[c], fine.stored[c]),
+                reference::encircled_flux(truth, infinity, reference::Orders::all), rounding, channel + ", all of the plane");
     }
   }
 
   /// Coarser meshes in a beam: how far what they absorb is off the ball's.
   void facets(double index, const Spectrum& sigma_a, const std::vector<int>& rings_of_meshes) {
-    for (const int rings : rings_of_meshes)
-      add_deviation(rings, shoot(mesh_ball_over_plane(index, sigma_a, infinity, rings), std::min<uint64_t>(mesh_count_, 400'000), {},
-                           printed("mesh of %d rings", rings)),
-                    index, sigma_a);
+    const uint64_t count = std::min<uint64_t>(mesh_count_, 400'000);  // is enough for deviations so large
+    for (const int rings : rings_of_meshes) {
+      const Scene scene = mesh_ball_over_plane(index, sigma_a, infinity, rings);
+      add_deviation(rings, shoot(scene, count, {}, printed("mesh of %d rings", rings)), index, sigma_a);
+    }
   }
 
   void pool(double height) {
@@ -147,12 +150,15 @@ class PhotonChecks {
       truth.sigma_a = sigma_a[c];
       const std::string channel = what + printed(", sigma_a = %g", sigma_a[c]);
       for (size_t k = 0; k < 4; ++k)
-        pool_.add(landed.within[k][c], reference::encircled_flux(truth, pool_radii[k]), rounding, channel + printed(", r < %g m", pool_radii[k]));
+        pool_.add(landed.within[k][c], reference::encircled_flux(truth, pool_radii[k]), rounding,
+                  channel + printed(", r < %g m", pool_radii[k]));
       pool_.add(landed.stored[c], reference::encircled_flux(truth, infinity), rounding, channel + ", all of the bottom");
       // Flux within r and 2 r tells that of an even irradiance as on the axis, up to r^6.
       std::vector<double> on_axis;
-      for (uint32_t k = 0; k < replicates; ++k) on_axis.push_back((16 * landed.within[4][c][k] - landed.within[5][c][k]) / 12);
-      pool_.add(on_axis, reference::irradiance_on_axis(truth) * axis_radius * axis_radius / 4, rounding, channel + ", on the axis");
+      for (uint32_t k = 0; k < replicates; ++k)
+        on_axis.push_back((16 * landed.within[4][c][k] - landed.within[5][c][k]) / 12);
+      pool_.add(on_axis, reference::irradiance_on_axis(truth) * axis_radius * axis_radius / 4, rounding,
+                channel + ", on the axis");
     }
   }
 
@@ -202,14 +208,17 @@ class PhotonChecks {
     add(panel_, "photons/emissive mesh", "Lambert's polygon by quadrature; pi times the solid angle", mesh_count_);
     // The next term is of 1/n^3: it takes .2 off the order between 8 and 32 rings, and .03 between 32 and 128.
     const double order = -fitted_exponent(facets_);
-    rows.push_back({"photons/mesh ball: facets", facets_.size(), std::abs(order - 2), context_.full ? 0.1 : 0.25, "of the order",
-                    "absorbed: the ball's, off by ~ 1/n^2 for n rings", printed("order %.3f", order), facets_, "rings", true});
+    rows.push_back({"photons/mesh ball: facets", facets_.size(), std::abs(order - 2), context_.full ? 0.1 : 0.25,
+                    "of the order", "absorbed: the ball's, off by ~ 1/n^2 for n rings", printed("order %.3f", order),
+                    facets_, "rings", true});
     return rows;
   }
 
  private:
   static constexpr std::array<double, 4> radii = {0.1, 0.2, 0.5, 1.0};
+  static std::vector<double> all_radii() { return {radii.begin(), radii.end()}; }
   static constexpr double axis_radius = 0.15;
+  static constexpr double all_shots = 16;     // calls of shoot() by check_photons
 
   /// Shoots all replicates and checks their balance, and that of all of them together.
   Landed shoot(Scene scene, uint64_t count, const std::vector<double>& within, const std::string& what) {
@@ -236,6 +245,7 @@ class PhotonChecks {
       before = after;
     }
     check_balance({}, before, what + ", all replicates");
+    context_.progress(static_cast<double>(++shots_) / all_shots);
     return landed;
   }
 
@@ -257,7 +267,8 @@ class PhotonChecks {
   }
 
   const CheckContext& context_;
-  uint64_t count_, mesh_count_, runs_ = 0;
+  uint64_t count_, mesh_count_, runs_ = 0;  ///< runs_: seeds used
+  int shots_ = 0;
   int fine_rings_;
   Worst balance_;
   std::string where_;

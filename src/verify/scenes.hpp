@@ -69,7 +69,8 @@ inline Mesh mesh_ball(const glm::dvec3& centre, double radius, int rings, int se
 }
 
 /// Lambert's formula: irradiance [W/m2] of the plane y = `place`.y by a parallelogram of radiance 1 above it.
-inline double panel_irradiance(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v, const glm::dvec3& place) {
+inline double panel_irradiance(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v,
+                               const glm::dvec3& place) {
   const glm::dvec3 corners[] = {corner, corner + u, corner + u + v, corner + v};
   double sum = 0.0;
   for (size_t k = 0; k < 4; ++k) {
@@ -83,7 +84,8 @@ inline void add(Scene& scene, std::variant<Sphere, Plane, Triangle, Mesh> geomet
   scene.shapes.push_back({"shape", {}, material, std::move(geometry)});
 }
 
-/// Adds a parallelogram as a mesh of 2 n^2 triangles, ever larger along both edges, that shines to the side of cross(u, v).
+/// Adds a parallelogram as a mesh of 2 n^2 triangles, ever larger along both edges, that shines to the side of
+/// cross(u, v) [W/(m2 sr)].
 inline void add_panel(Scene& scene, const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v, uint32_t n,
                       double radiance) {
   Material material = surface(Surface::opaque, 0.0, radiance);

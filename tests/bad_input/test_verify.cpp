@@ -26,7 +26,8 @@ struct BrokenKernels {
 };
 
 /// Each of `checks` fails; they are of `groups`.
-void check_caught(const BrokenKernels& kernels, const std::vector<std::string>& groups, const std::vector<std::string>& checks) {
+void check_caught(const BrokenKernels& kernels, const std::vector<std::string>& groups,
+                  const std::vector<std::string>& checks) {
   std::vector<std::string> arguments = {"verify", "--kernels", kernels.folder.path()};
   for (const std::string& group : groups) arguments.insert(arguments.end(), {"--only", group});
   const Ended run = vitrum_run(arguments);
