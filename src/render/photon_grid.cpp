@@ -115,10 +115,12 @@ PhotonGrid::Room PhotonGrid::new_room(uint32_t rows) {
 
 void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass, double share) {
   const PhotonSettings& settings = context_.scene.photons;
-  if (pass == 0 || !settings.progressive)
+  if (pass == 0 || !settings.progressive) {
+    const double wanted = settings.progressive ? settings.nearest : settings.nearest * share;
     first_radius_ = settings.estimate == PhotonEstimate::automatic
-                        ? static_cast<double>(automatic_radius(sample, expected, settings.nearest * share))
+                        ? static_cast<double>(automatic_radius(sample, expected, wanted))
                         : settings.radius;
+  }
   map_.radius = static_cast<float>(settings.progressive ? first_radius_ * std::sqrt(progressive_area(pass)) : first_radius_);
   map_.grid = choose_grid(sample, expected, map_.radius);
   const uint32_t cells = log2_cells(map_.grid);

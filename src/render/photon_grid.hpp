@@ -36,7 +36,8 @@ class PhotonGrid {
 
   /// Chooses radius and grid from `sample`, places of some photons [m], for pass number `pass` of the picture, from 0,
   /// which stores about `expected`. It has the fraction `share` of all photons of the picture: an automatic radius takes in
-  /// as many of all, so that the number of passes does not make it wider. A progressive radius is that of pass 0, shrunk.
+  /// as many of all, so that the number of passes does not make it wider. A progressive radius is that of pass 0, where
+  /// an automatic one takes in as many of that pass, shrunk.
   void start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass, double share);
   const kernel::GridData& grid() const { return map_.grid; }
   /// Buckets of cells, by which the photons of a launch are to be counted.
