@@ -280,7 +280,7 @@ class PhotonChecks {
 
 std::vector<CheckResult> check_photons(const CheckContext& context) {
   // In full 10^8 to each exact body, in all replicates together. Meshes take ten times as long: a third of that.
-  PhotonChecks checks(context, context.full ? 3'200'000 : 32'000, context.full ? 1'000'000 : 12'000);
+  PhotonChecks checks(context, context.full ? 3'200'000 : 32'000, context.full ? 1'000'000 : 8'000);
   checks.ball(1.333, {0.1, 1.0, 1e6}, infinity);
   checks.ball(1.5, {0.0, 0.5, 1e6}, infinity);
   checks.ball(2.4, {0.1, 2.0, 1e6}, infinity);
