@@ -2,6 +2,8 @@
 // other than 0 and leaves nothing behind; good input gives whole files that hold what was asked for.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -145,7 +147,60 @@ TEST_CASE("bad view") {
   const Words render{"render", default_scene, "-o", folder / "out.png"};
   check_refused(render + Words{"--view", "nromal"}, "--view nromal", "there is no such view", "did you mean 'normal'?");
   check_refused(render + Words{"--view", "depth", "--view", "depth"}, "--view depth", "named twice", "name it once");
+  // One sample tells no scatter.
+  const Words one = render + Words{"--quiet", "--samples", "1"};
+  check_refused(one + Words{"--view", "error"}, "--view error", "one sample a pixel", "take at least --samples 2");
+  check_refused(one + Words{"--view", "bias"}, "--view bias", "one sample a pixel", "take at least --samples 2");
+  check_refused(render + Words{"--quiet", "--view", "bias", "--set", "photons.estimate=nearest"}, "--view bias", "k nearest photons",
+                "take photons.estimate");
   CHECK(folder.entries() == 0);
+}
+
+TEST_CASE("views of errors: the picture's, what was cut, the radius' bias") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "report.json", exr = folder / "a.exr";
+  const Words words = Words{"render", default_scene, "-o", exr, "--report", file, "--size", "16x16", "--photons", "20000",
+                            "--view", "beauty", "--view", "error", "--view", "cut", "--view", "bias"};
+  const auto report_of = [&](const Words& more) {
+    const Ended run = vitrum_run(words + more);
+    REQUIRE_MESSAGE(run.code == 0, run.err);
+    return nlohmann::json::parse(file_bytes(file));
+  };
+  const nlohmann::json report = report_of({"--samples", "16", "--set", "render.max_depth=3"});
+  const LayeredPicture picture = read_layers(exr, {"test"});
+  REQUIRE(picture.layers.size() == 4);
+  CHECK(report["settings"]["passes"] == 8);
+  CHECK(report["standard_error"]["degrees_of_freedom"] == 7);
+  // The report has mean and worst pixel of what the layers show.
+  const auto check = [&](const std::string& layer, const std::string& key) {
+    CAPTURE(layer);
+    const auto found = std::find_if(picture.layers.begin(), picture.layers.end(),
+                                    [&](const PictureLayer& candidate) { return candidate.name == layer; });
+    REQUIRE(found != picture.layers.end());
+    REQUIRE(found->channels == 3);
+    double sum = 0, worst = 0;
+    size_t at = 0;
+    for (size_t i = 0; i < found->values.size(); ++i) {
+      const double value = static_cast<double>(found->values[i]);
+      sum += value;
+      if (std::abs(value) > std::abs(worst)) {
+        worst = value;
+        at = i / 3;
+      }
+    }
+    CHECK(worst != 0);
+    const nlohmann::json& told = key == "bias" ? report["photon_estimate"]["bias"] : report[key];
+    CHECK(told["mean"] == doctest::Approx(sum / (16 * 16 * 3)).epsilon(1e-5));
+    CHECK(told["worst_pixel"] == doctest::Approx(worst).epsilon(1e-5));
+    CHECK(told["pixel"] == nlohmann::json{at % 16, at / 16});
+  };
+  check("error", "standard_error");
+  check("cut", "cut_radiance");
+  check("bias", "bias");
+  CHECK(report["cut_radiance"]["is_bound"] == false);  // its lamp is a point
+  // Fewer samples are fewer replicates; more passes than asked for are not taken.
+  CHECK(report_of({"--samples", "3"})["standard_error"]["degrees_of_freedom"] == 2);
+  CHECK(report_of({"--samples", "24", "--set", "render.passes=12"})["settings"]["passes"] == 12);
 }
 
 TEST_CASE("bad --set") {
@@ -276,6 +331,14 @@ TEST_CASE("the report is complete") {
     CHECK(watts("absorbed") > 0.0);
   }
   CHECK(report["cut_weight"]["mean"] >= 0.0);
+  CHECK(report["cut_radiance"]["mean"] >= 0.0);
+  CHECK(report["rejected_values"] == 0);
+  CHECK(report["photons"]["rejected"] == 0);
+  const nlohmann::json& estimate = report["photon_estimate"];
+  CHECK(estimate["radius_m"] > 0.0);
+  CHECK(estimate["noise"] == doctest::Approx(std::sqrt(4 / (3 * estimate["photons"].get<double>()))));
+  CHECK_FALSE(estimate.contains("bias"));
+  CHECK_FALSE(report.contains("standard_error"));  // of a single pass
   CHECK(report["memory_bytes"]["film"] > 0);
   CHECK(report["memory_bytes"]["photon map"] > 0);
 }

@@ -199,6 +199,30 @@ TEST_CASE("compare: the z-test tells an error of one per cent from noise") {
   CHECK(contains(compare({a, b}).out, "no difference seen: p = "));
 }
 
+TEST_CASE("compare: renders that tell their errors, and one that is one per cent brighter") {
+  const Pictures pictures;
+  const auto render = [&](const std::string& name, const std::string& seed, const std::string& intensity) {
+    const std::string file = pictures.folder / name;
+    const Ended run = vitrum_run({"render", VITRUM_SOURCE_DIR "/models/default_scene/scene.toml", "-o", file, "--quiet", "--size",
+                                  "24x18", "--samples", "2048", "--photons", "200000", "--seed", seed, "--view", "beauty",
+                                  "--view", "error", "--set", "light.lamp.intensity=" + intensity});
+    REQUIRE_MESSAGE(run.code == 0, run.err);
+    return file;
+  };
+  const std::string a = render("a.exr", "1", "3.1416"), b = render("b.exr", "2", "3.1416");
+  const std::string brighter = render("brighter.exr", "3", "3.173");
+  // Pictures of the same settings have the same errors: 14 degrees.
+  const Words test{"--degrees-of-freedom", "14", "--threshold", "z=0.001"};
+  const nlohmann::json same = pictures.report(Words{a, b} + test, 0)["views"]["beauty"]["z_test"];
+  CHECK(same["tested_values"] > 500);
+  // About 1.17 if the errors are right (14 degrees); pixels share photons, so that its own error is not known.
+  CHECK(same["mean_square"] > 0.9);
+  CHECK(same["mean_square"] < 1.5);
+  const nlohmann::json different = pictures.report(Words{a, brighter} + test, 3)["views"]["beauty"]["z_test"];
+  CHECK(different["differ"] == true);
+  CHECK(different["largest_z"] < 0);
+}
+
 TEST_CASE("compare: the picture of the differences is written whole, and nothing else") {
   const Pictures pictures;
   PictureLayer layer = layer_of("beauty", 1.0f);

@@ -1,29 +1,16 @@
 // `vitrum verify`: passes, fails with kernels in which a formula is wrong and names the check, refuses what it does not know.
 #include <doctest/doctest.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "broken_kernels.hpp"
 #include "command_line.hpp"
 
 using namespace vitrum;
 
 namespace {
-
-/// The kernels with `right` replaced by `wrong` in one of their files.
-struct BrokenKernels {
-  TemporaryFolder folder;
-
-  BrokenKernels(const std::string& file, const std::string& right, const std::string& wrong) {
-    std::filesystem::copy(VITRUM_SOURCE_DIR "/kernels", folder.path(), std::filesystem::copy_options::recursive);
-    std::string text = file_bytes(folder / file);
-    const size_t at = text.find(right);
-    REQUIRE(at != std::string::npos);
-    put_file(folder / file, text.replace(at, right.size(), wrong));
-  }
-};
 
 /// Each of `checks` fails; they are of `groups`.
 void check_caught(const BrokenKernels& kernels, const std::vector<std::string>& groups,
