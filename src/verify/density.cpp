@@ -137,7 +137,8 @@ void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<C
   Estimates noise;
   std::vector<double> all(replicates, 0.0);
   std::vector<std::pair<double, double>> curve;
-  const std::vector<uint64_t> counts = {8'000, 16'000, 32'000};
+  const uint64_t least = context.full ? 32'000 : 8'000;
+  const std::vector<uint64_t> counts = {least, 2 * least, 4 * least};
   for (const uint64_t count : counts) {
     Gathering gathering(context, scene, places, count);
     std::vector<double> means, squares;
