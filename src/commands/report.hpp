@@ -8,7 +8,7 @@
 namespace vitrum {
 
 /// Settings, device, features, times by stage, counts, memory, what the limits cut away, and errors as far as known
-/// (docs/report.md).
+/// (docs/errors.md).
 std::string render_report(const Scene& scene, const Device& device, const RenderResult& result);
 
 }  // namespace vitrum

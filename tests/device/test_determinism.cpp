@@ -32,7 +32,8 @@ const std::vector<Case> cases = {
 
 std::string scene_path(const Case& c) { return std::string(VITRUM_SOURCE_DIR "/models/") + c.model + "/scene.toml"; }
 
-const std::vector<View> all_views = {View::beauty, View::photons, View::caustics, View::albedo, View::normal, View::depth};
+const std::vector<View> all_views = {View::beauty, View::photons, View::caustics, View::albedo, View::normal,
+                                     View::depth,  View::error,   View::cut,      View::bias};
 
 RenderResult rendered(const Case& c, unsigned group_size) {
   Device device("", group_size);
@@ -57,6 +58,9 @@ void check_same(const RenderResult& a, const RenderResult& b) {
     CHECK(differing == 0);
     CHECK(not_finite == 0);
   }
+  CHECK(a.standard_error() == b.standard_error());
+  CHECK(a.rays.gathered == b.rays.gathered);
+  CHECK(a.rays.gathered_pairs == b.rays.gathered_pairs);
   CHECK(a.photon_radius == b.photon_radius);
   CHECK(a.photons.photons_stored == b.photons.photons_stored);
   CHECK(a.photons.shot == b.photons.shot);
@@ -74,7 +78,7 @@ TEST_CASE("two group sizes, and two runs of one, give the same bits") {
     CAPTURE(std::string(c.model));
     const RenderResult first = rendered(c, 32);
     REQUIRE(first.photons.photons_stored > 0);
-    CHECK(first.film.names().size() == 7);  // all views and what was cut
+    CHECK(first.film.names().size() == 8);  // one for each view; the error is that of the beauty
     check_same(first, rendered(c, 64));
     check_same(first, rendered(c, 32));
   }
