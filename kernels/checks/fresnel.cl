@@ -33,7 +33,7 @@ KERNEL void border(__global const float* in, __global float* out, const uint cou
 
 // R and T of the border {eta, 1 / eta, k_hi, k_lo} at the cosines whose bits are first, first + 1, ...
 KERNEL void cosines(const float eta, const float eta_inverse, const float k_hi, const float k_lo, const uint first,
-                      __global float* out, const uint count) {
+                    __global float* out, const uint count) {
   const uint i = get_global_id(0) * WIDTH;
   if (i >= count) return;
   Interface b;

@@ -11,7 +11,8 @@
 namespace vitrum {
 
 /// Everything that lies in the scene's buffers (kernels/types.h), and the few numbers that go with it.
-/// Shapes are numbered spheres first, then flats, then bodies: the faces of a mesh that have one material. Material 0 is the background's.
+/// Shapes are numbered spheres first, then flats, then bodies: the faces of a mesh that have one
+/// material. Material 0 is the background's.
 struct SceneData {
   std::vector<kernel::SphereData> spheres;
   std::vector<kernel::FlatData> flats;

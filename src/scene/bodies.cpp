@@ -33,12 +33,16 @@ std::vector<Body> bodies_of(const Mesh& mesh) {
   for (size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto [place, is_new] = numbers.try_emplace(mesh.materials[i], bodies.size());
     if (is_new) {
-      bodies.push_back({mesh.materials[i]});
+      const glm::vec3 corner = mesh.positions[mesh.triangles[i].x];
+      bodies.push_back({mesh.materials[i], corner, corner});
       open.push_back(0);
     }
     const glm::uvec3 t = mesh.triangles[i];
+    Body& body = bodies[place->second];
     for (int k = 0; k < 3; ++k) {
       const uint64_t a = corners[t[k]], b = corners[t[(k + 1) % 3]];
+      body.low = glm::min(body.low, mesh.positions[t[k]]);
+      body.high = glm::max(body.high, mesh.positions[t[k]]);
       open[place->second] += mixed(a + 3 * b) - mixed(b + 3 * a);
     }
   }

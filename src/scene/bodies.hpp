@@ -10,6 +10,7 @@ namespace vitrum {
 
 struct Body {
   uint32_t material = none;     ///< index into Scene::materials
+  glm::vec3 low{0.0f}, high{0.0f};  ///< its box [m]
   bool closed = false;          ///< as many faces go along each edge one way as the other: a ray that enters leaves again
 };
 

@@ -22,18 +22,26 @@ struct Box {
   }
 };
 
-/// Box around a shape, or around a mesh's faces of one material, with room for rounding. An infinite plane has the part of its box that `near` meets: itself if it
+/// A shape that rays tell from others: an exact one, or the faces of a mesh that have one material.
+struct Piece {
+  const Shape* shape;
+  uint32_t material;
+  std::optional<Body> body;     ///< of a mesh
+};
+
+/// Box around a piece, with room for rounding. An infinite plane has the part of its box that `near` meets: itself if it
 /// cuts `near`, nothing otherwise.
-Box box_of(const Shape& shape, uint32_t material, const Box* near) {
+Box box_of(const Piece& piece, const Box* near) {
+  const Shape& shape = *piece.shape;
   Box box;
   if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
     box.add(sphere->centre - sphere->radius);
     box.add(sphere->centre + sphere->radius);
   } else if (const auto* triangle = std::get_if<Triangle>(&shape.geometry)) {
     for (const glm::dvec3& p : {triangle->a, triangle->b, triangle->c}) box.add(p);
-  } else if (const auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
-    for (size_t i = 0; i < mesh->triangles.size(); ++i)
-      for (int k = 0; k < 3 && mesh->materials[i] == material; ++k) box.add(mesh->positions[mesh->triangles[i][k]]);
+  } else if (piece.body) {
+    box.add(piece.body->low);
+    box.add(piece.body->high);
   } else if (near) {
     const Plane& plane = std::get<Plane>(shape.geometry);
     const glm::dvec3 half = 0.5 * (near->high - near->low);
@@ -46,31 +54,24 @@ Box box_of(const Shape& shape, uint32_t material, const Box* near) {
   return box;
 }
 
-/// A shape that rays tell from others: an exact one, or the faces of a mesh that have one material.
-struct Piece {
-  const Shape* shape;
-  uint32_t material;
-  bool is_mesh;
-};
-
 std::vector<Piece> pieces_of(const Scene& scene) {
   std::vector<Piece> pieces;
   for (const Shape& shape : scene.shapes)
     if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry))
-      for (const Body& body : bodies_of(*mesh)) pieces.push_back({&shape, body.material, true});
+      for (const Body& body : bodies_of(*mesh)) pieces.push_back({&shape, body.material, body});
     else
-      pieces.push_back({&shape, shape.material, false});
+      pieces.push_back({&shape, shape.material, {}});
   return pieces;
 }
 
 /// Does the box of a transparent piece of a mesh meet that of another piece?
 bool may_touch(const Scene& scene, const std::vector<Piece>& pieces) {
   for (const Piece& piece : pieces) {
-    if (!piece.is_mesh || scene.materials[piece.material].surface != Surface::dielectric) continue;
-    const Box box = box_of(*piece.shape, piece.material, nullptr);
+    if (!piece.body || scene.materials[piece.material].surface != Surface::dielectric) continue;
+    const Box box = box_of(piece, nullptr);
     for (const Piece& other : pieces) {
       if (&other == &piece) continue;
-      const Box b = box_of(*other.shape, other.material, &box);
+      const Box b = box_of(other, &box);
       if (glm::all(glm::lessThanEqual(box.low, b.high)) && glm::all(glm::lessThanEqual(b.low, box.high))) return true;
     }
   }
@@ -87,7 +88,7 @@ Features scene_features(const Scene& scene) {
   size_t media_bodies = 0;
   for (const Piece& piece : pieces) {
     used[piece.material] = true;
-    f.mesh |= piece.is_mesh;
+    f.mesh |= piece.body.has_value();
     media_bodies += scene.materials[piece.material].surface == Surface::dielectric;
   }
   bool specular_surface = false;
