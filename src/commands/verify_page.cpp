@@ -22,24 +22,24 @@ std::string escaped(const std::string& plain) {
 /// Error against input, with the bound as a line.
 std::string plot(const CheckResult& result) {
   constexpr double width = 640, height = 180;
-  const auto place = [&](double x) { return result.logarithmic ? std::log2(std::max(x, 0x1p-149)) : x; };
+  const auto place = [&](double x) { return result.plots[0].log_input ? std::log2(std::max(x, 0x1p-149)) : x; };
   double low = INFINITY, high = -INFINITY, top = result.bound;
-  for (const auto& [x, error] : result.curve) {
+  for (const auto& [x, error] : result.plots[0].lines[0].points) {
     low = std::min(low, place(x));
     high = std::max(high, place(x));
     if (std::isfinite(error)) top = std::max(top, error);
   }
   const auto y = [&](double error) { return height - std::min(error / top, 1.0) * (height - 10); };
   std::string points;
-  for (const auto& [x, error] : result.curve)
+  for (const auto& [x, error] : result.plots[0].lines[0].points)
     points += printed("%.1f,%.1f ", (place(x) - low) / (high - low) * width, y(std::isfinite(error) ? error : top));
   return "<figure><svg viewBox='0 0 640 180' width='640' height='180'>" +
          printed("<line x1='0' x2='640' y1='%.1f' y2='%.1f' stroke='#c33' stroke-dasharray='4'/>", y(result.bound),
               y(result.bound)) +
          "<polyline fill='none' stroke='#246' points='" + points + "'/></svg><figcaption>" + escaped(result.name) +
          printed(": largest error [%s] from 0 to %.3g, dashed: the bound %.3g; %s from %.3g to %.3g%s</figcaption></figure>\n",
-              result.unit.c_str(), top, result.bound, result.curve_input.c_str(), result.curve.front().first,
-              result.curve.back().first, result.logarithmic ? ", logarithmic" : "");
+              result.unit.c_str(), top, result.bound, result.plots[0].input.c_str(), result.plots[0].lines[0].points.front().first,
+              result.plots[0].lines[0].points.back().first, result.plots[0].log_input ? ", logarithmic" : "");
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ std::string verify_page(const VerifyRun& run) {
             escaped(r.worst_input) + "</tr>\n";
   page += "</table>\n";
   for (const CheckResult& r : run.results)
-    if (!r.curve.empty()) page += plot(r);
+    if (!r.plots.empty()) page += plot(r);
   return page + "</body></html>\n";
 }
 

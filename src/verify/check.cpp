@@ -9,15 +9,24 @@ namespace vitrum {
 
 const std::vector<CheckGroup>& check_groups() {
   static const std::vector<CheckGroup> groups = {
-      {"interface", "Fresnel and Snell, against quadruple precision", 0.15, check_interface},
-      {"absorption", "Bouguer's law", 0.02, check_absorption},
-      {"slab-and-ball", "pictures of a slab, a ball and nested balls, against closed forms", 0.05, check_slab_and_ball},
-      {"geometry", "rays at edges and corners of meshes, and photons that go through them", 0.1, check_geometry},
-      {"photons", "balance of power, and caustics of a ball by quadrature", 0.5, check_photons},
-      {"density", "irradiance from photons: mean, bias, noise, and a radius that shrinks, against theory", 0.1, check_density},
-      {"lights", "irradiance under each kind of light", 0.04, check_lights},
-      {"determinism", "the same bits again, and with other group sizes", 0.02, check_determinism},
-      {"devices", "another device's answers to the same questions, with --against", 0.02, check_devices},
+      {"interface", "Fresnel and Snell, against quadruple precision",
+       "checks/fresnel.cl: border", 0.15, check_interface},
+      {"absorption", "Bouguer's law",
+       "checks/fresnel.cl: medium", 0.02, check_absorption},
+      {"slab-and-ball", "pictures of a slab, a ball and nested balls, against closed forms",
+       "stages/camera.cl: camera", 0.05, check_slab_and_ball},
+      {"geometry", "rays at edges and corners of meshes, and photons that go through them",
+       "checks/geometry.cl: edge_rays, chains", 0.1, check_geometry},
+      {"photons", "balance of power, and caustics of a ball by quadrature",
+       "stages/photons.cl: photons", 0.5, check_photons},
+      {"density", "irradiance from photons: mean, bias, noise, and a radius that shrinks, against theory",
+       "stages/photons.cl: photons, checks/gather.cl: gather_at", 0.1, check_density},
+      {"lights", "irradiance under each kind of light",
+       "stages/camera.cl: camera", 0.04, check_lights},
+      {"determinism", "the same bits again, and with other group sizes",
+       "stages/photons.cl: photons, stages/camera.cl: camera", 0.02, check_determinism},
+      {"devices", "another device's answers to the same questions, with --against",
+       "checks/fresnel.cl, stages/photons.cl, stages/camera.cl", 0.02, check_devices},
   };
   return groups;
 }

@@ -11,8 +11,30 @@
 #include "core/printed.hpp"
 #include "device/kernels.hpp"
 #include "device/opencl.hpp"
+#include "film/images.hpp"
 
 namespace vitrum {
+
+/// A line of a plot.
+struct PlotLine {
+  std::string name;             ///< "vitrum", or the form that it is compared with
+  std::vector<std::pair<double, double>> points;  ///< input, error
+};
+
+/// Error against input, for the reports.
+struct Plot {
+  std::string title;
+  std::string input, error;     ///< what the axes show, with units
+  std::vector<PlotLine> lines;
+  bool log_input = false, log_error = false;
+  double bound = 0.0;           ///< drawn where it is above 0
+};
+
+/// A picture for the reports, with linear values.
+struct CheckPicture {
+  std::string caption;
+  Picture picture;
+};
 
 /// What was found: one row of the table.
 struct CheckResult {
@@ -23,9 +45,9 @@ struct CheckResult {
   std::string unit;             ///< of both: "ulp", "rad", "relative", "" (absolute)
   std::string truth;            ///< where the right answers come from: equation, paper
   std::string worst_input{};    ///< what gave the largest error, in digits that reproduce it
-  std::vector<std::pair<double, double>> curve{};  ///< error against input, for the report; may be empty
-  std::string curve_input{};    ///< what the curve's first number is
-  bool logarithmic = false;     ///< whether it wants a logarithmic axis
+  std::vector<Plot> plots{};
+  std::vector<CheckPicture> pictures{};
+  std::string kernel{};         ///< what was asked; left empty, it is the group's
 
   bool passed() const { return worst <= bound; }
 };
@@ -43,6 +65,7 @@ struct CheckContext {
 struct CheckGroup {
   const char* name;             ///< as after --only
   const char* what;             ///< for --help
+  const char* kernels;          ///< what it asks, for the one who looks for a fault
   double full_share;            ///< of the time that a full run takes, about
   std::vector<CheckResult> (*run)(const CheckContext&);  ///< throws Error as the device and its kernels do
 };

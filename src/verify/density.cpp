@@ -164,9 +164,7 @@ void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<C
   const size_t first = rows.size();
   noise.rows("density/noise with count", "variance over 4/(3 k) E^2 and its terms of higher order",
              context.full ? 0.003 : 0.01, "of the variance", blunt, rows);
-  rows[first].curve = curve;
-  rows[first].curve_input = "photons within the radius";
-  rows[first].logarithmic = true;
+  rows[first].plots.push_back({"", "photons within the radius", "noise, relative", {{"vitrum", curve}}, true, true});
 }
 
 /// Many photons within wide radii: the bias is the kernel's second moment times the Laplacian.
@@ -194,9 +192,7 @@ void check_bias(const CheckContext& context, Estimates& unbiased, std::vector<Ch
   const size_t first = rows.size();
   bias.rows("density/bias with radius", "r^2 lap(E) / 12 + r^4 lap(lap(E)) / 384", context.full ? 0.02 : 0.2,
             "of the bias", blunt, rows);
-  rows[first].curve = curve;
-  rows[first].curve_input = "radius [m]";
-  rows[first].logarithmic = true;
+  rows[first].plots.push_back({"", "radius [m]", "bias, relative", {{"vitrum", curve}}, true, true});
 }
 
 /// Bias of the mean over passes whose radius shrinks.
@@ -255,8 +251,8 @@ void check_slope(const CheckContext& context, std::vector<CheckResult>& rows) {
   }
   const double slope = fitted_exponent(errors);
   rows.push_back({"density/progressive: slope", errors.size(), std::abs(slope + 2.0 / 3.0), 0.05, "of the exponent",
-                  "mean squared error ~ passes^(-2/3), Knaus and Zwicker 2011", printed("slope %.4f", slope), errors,
-                  "passes", true});
+                  "mean squared error ~ passes^(-2/3), Knaus and Zwicker 2011", printed("slope %.4f", slope),
+                  {{"", "passes", "mean squared error, relative", {{"vitrum", errors}}, true, true}}});
 }
 
 }  // namespace

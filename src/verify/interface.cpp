@@ -142,10 +142,10 @@ void check_angles(FresnelKernel& border, const CheckContext& context, std::vecto
     rows.push_back({name, worst.cases, worst.error, bound, unit, truth, worst_inputs[input]});
   };
   const auto curve = [&](const std::array<double, AngleTally::bins>& errors) {
-    rows.back().curve_input = "cos_theta_i";
-    rows.back().logarithmic = true;
+    PlotLine line{"vitrum", {}};
     for (size_t k = 0; k < errors.size(); ++k)
-      rows.back().curve.emplace_back(std::ldexp(1.0, static_cast<int>(k) - 149), errors[k]);
+      line.points.emplace_back(std::ldexp(1.0, static_cast<int>(k) - 149), errors[k]);
+    rows.back().plots.push_back({"", "cos_theta_i", "largest error [ulp]", {line}, true, false, rows.back().bound});
   };
   row("interface/reflectance", all.R, 16, "ulp", "Fresnel (Born and Wolf 1.5.2), 113 bits", 0);
   curve(all.R_by_binade);
