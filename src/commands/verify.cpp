@@ -7,6 +7,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/outputs.hpp"
+#include "commands/verify_document.hpp"
 #include "commands/verify_page.hpp"
 #include "core/error.hpp"
 #include "core/log.hpp"
@@ -19,7 +20,7 @@ namespace vitrum {
 namespace {
 
 struct VerifyArguments {
-  std::string device, against, report, report_html;
+  std::string device, against, report, report_html, report_markdown;
   std::vector<std::string> only;
   KernelFiles kernels;
   bool full = false, quick = false;
@@ -54,13 +55,25 @@ std::string table_row(const CheckResult& r) {
   return line;
 }
 
+nlohmann::ordered_json plots_json(const std::vector<Plot>& plots) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Plot& plot : plots) {
+    nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+    for (const PlotLine& line : plot.lines) lines.push_back({{"name", line.name}, {"points", line.points}});
+    all.push_back({{"title", plot.title}, {"x", plot.x}, {"y", plot.y}, {"lines", lines}});
+  }
+  return all;
+}
+
 std::string json_report(const VerifyRun& run) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const CheckResult& r : run.results)
     rows.push_back({{"check", r.name}, {"passed", r.passed()}, {"cases", r.cases}, {"worst", r.worst}, {"bound", r.bound},
-                    {"unit", r.unit}, {"truth", r.truth}, {"worst_input", r.worst_input}});
+                    {"unit", r.unit}, {"truth", r.truth}, {"worst_input", r.worst_input}, {"kernel", r.kernel},
+                    {"plots", plots_json(r.plots)}});
   const nlohmann::ordered_json report = {
       {"version", version()},
+      {"commit", commit()},
       {"device", device_json(run.device)},
       {"against", run.other ? device_json(*run.other) : nlohmann::ordered_json()},
       {"mode", run.full ? "full" : "quick"},
@@ -70,11 +83,23 @@ std::string json_report(const VerifyRun& run) {
   return report.dump(2) + "\n";
 }
 
+/// Writes the document, and what it shows in a folder beside it that is named as the file without its extension.
+void write_document(const std::string& file, const VerifyRun& run) {
+  const std::filesystem::path folder = std::filesystem::path(file).replace_extension();
+  const Document document = verify_document(run, folder.filename().string());
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) throw Error({folder.string()}, "the folder cannot be made: " + failure.message(), "choose another --report-markdown");
+  for (const auto& [name, bytes] : document.files) write_whole_file((folder / name).string(), bytes);
+  write_whole_file(file, document.text);
+}
+
 int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<CheckGroup> groups = chosen_groups(arguments.only);
-  for (const std::string& file : {arguments.report, arguments.report_html})
+  for (const std::string& file : {arguments.report, arguments.report_html, arguments.report_markdown})
     if (!file.empty()) check_whole_file(file);
+  if (!arguments.report_html.empty() || !arguments.report_markdown.empty()) start_image_process();  // pictures as PNG
   if (!arguments.kernels.folder.empty() && !std::filesystem::is_directory(arguments.kernels.folder))
     throw Error({"--kernels " + arguments.kernels.folder}, "there is no such folder",
                 "name the folder kernels/ of vitrum's sources");
@@ -103,27 +128,26 @@ int run_verify(const VerifyArguments& arguments) {
     for (const CheckGroup& group : groups) {
       const auto within = [&](double part) { progress.update((done + part * group.full_share) / total); };
       within(0.0);
-      for (CheckResult& result : group.run({device, arguments.device, arguments.kernels, arguments.full, other ? &*other : nullptr, within}))
+      for (CheckResult& result : group.run({device, arguments.device, arguments.kernels, arguments.full, other ? &*other : nullptr, within})) {
+        if (result.kernel.empty()) result.kernel = group.kernels;
         run.results.push_back(std::move(result));
+      }
       done += group.full_share;
     }
     set_quiet(was_quiet);
   }
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  size_t failed = 0;
-  for (const CheckResult& result : run.results) {
-    std::fputs(table_row(result).c_str(), stdout);
-    failed += !result.passed();
-  }
-  std::printf("%zu checks, %zu failed, %.1f s\n", run.results.size(), failed, run.seconds);
+  for (const CheckResult& result : run.results) std::fputs(table_row(result).c_str(), stdout);
+  std::printf("%zu checks, %zu failed, %.1f s\n", run.results.size(), run.failed(), run.seconds);
   for (const CheckResult& result : run.results)
     if (!result.passed())
-      std::printf("FAIL %s: %g %s, more than %g, at %s\n", result.name.c_str(), result.worst, result.unit.c_str(),
-                  result.bound, result.worst_input.c_str());
+      std::printf("FAIL %s: %g %s, more than %g, at %s; kernels/%s\n", result.name.c_str(), result.worst,
+                  result.unit.c_str(), result.bound, result.worst_input.c_str(), result.kernel.c_str());
   if (!arguments.report.empty()) write_whole_file(arguments.report, json_report(run));
   if (!arguments.report_html.empty()) write_whole_file(arguments.report_html, verify_page(run));
-  return failed == 0 ? 0 : exit_unverified;
+  if (!arguments.report_markdown.empty()) write_document(arguments.report_markdown, run);
+  return run.failed() == 0 ? 0 : exit_unverified;
 }
 
 }  // namespace
@@ -141,7 +165,10 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->type_name("GROUP")
       ->allow_extra_args(false);
   command->add_option("--report", arguments->report, "Write the table with the worst inputs as JSON")->type_name("FILE");
-  command->add_option("--report-html", arguments->report_html, "Write it as a page, with plots of error against input")
+  command->add_option("--report-html", arguments->report_html, "Write it as a page, with plots and pictures")
+      ->type_name("FILE");
+  command->add_option("--report-markdown", arguments->report_markdown,
+                      "Write it for a reader, with plots and pictures in a folder beside it, beside the usual forms")
       ->type_name("FILE");
   command->add_option("--kernels", arguments->kernels.folder, "Read the kernels from this folder instead of the binary")
       ->type_name("DIR");

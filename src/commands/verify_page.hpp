@@ -1,23 +1,13 @@
 #pragma once
-// What a run of `vitrum verify` found, and the page that shows it.
+// `vitrum verify --report-html`.
 
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "verify/check.hpp"
+#include "commands/verify_run.hpp"
 
 namespace vitrum {
 
-struct VerifyRun {
-  DeviceInfo device;
-  std::optional<DeviceInfo> other;  ///< of --against
-  std::vector<CheckResult> results;
-  bool full = false;
-  double seconds = 0.0;
-};
-
-/// One HTML page: the table, and a plot of each check that has a curve.
+/// One HTML page with nothing beside it: the table, the plots, the pictures.
 std::string verify_page(const VerifyRun& run);
 
 }  // namespace vitrum

@@ -182,8 +182,8 @@ void check_writable(const std::string& path) {
   check_whole_file(path);
 }
 
-void write_picture(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
-                   const DisplaySettings& display, const std::map<std::string, std::string>& metadata) {
+std::string picture_file(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
+                         const DisplaySettings& display, const std::map<std::string, std::string>& metadata) {
   assert(width > 0 && height > 0 && !layers.empty());
   const size_t pixels = size_t(width) * size_t(height);
   for ([[maybe_unused]] const PictureLayer& layer : layers) {
@@ -212,7 +212,12 @@ void write_picture(const std::string& path, int width, int height, const std::ve
   if (answer.status != Status::ok) {
     throw Error({path}, "the picture cannot be encoded: " + answer.message, "choose another format");
   }
-  write_whole_file(path, file);
+  return file;
+}
+
+void write_picture(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
+                   const DisplaySettings& display, const std::map<std::string, std::string>& metadata) {
+  write_whole_file(path, picture_file(path, width, height, layers, display, metadata));
 }
 
 }  // namespace vitrum

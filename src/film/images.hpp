@@ -55,6 +55,10 @@ LayeredPicture read_layers(const std::string& path, const SourceLocation& asked_
 /// Throws Error; called before rendering begins. Does not start the process, nor touch the file.
 void check_writable(const std::string& path);
 
+/// What write_picture writes, as bytes. Throws Error at {path}.
+std::string picture_file(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
+                         const DisplaySettings& display, const std::map<std::string, std::string>& metadata);
+
 /// Writes layers to `path`, whole or not at all (core/whole_file.hpp). The same input gives the same bytes.
 /// .exr: 32-bit float, linear, all layers. .hdr: linear, first layer. .png, .jpg, .tif, .bmp: 8-bit, first layer, with
 /// the display transform. `metadata` goes into the file's header where the format has room, with the version of vitrum:

@@ -8,27 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/plot.hpp"
 #include "core/printed.hpp"
 #include "device/kernels.hpp"
 #include "device/opencl.hpp"
 #include "film/images.hpp"
 
 namespace vitrum {
-
-/// A line of a plot.
-struct PlotLine {
-  std::string name;             ///< "vitrum", or the form that it is compared with
-  std::vector<std::pair<double, double>> points;  ///< input, error
-};
-
-/// Error against input, for the reports.
-struct Plot {
-  std::string title;
-  std::string input, error;     ///< what the axes show, with units
-  std::vector<PlotLine> lines;
-  bool log_input = false, log_error = false;
-  double bound = 0.0;           ///< drawn where it is above 0
-};
 
 /// A picture for the reports, with linear values.
 struct CheckPicture {
@@ -45,7 +31,7 @@ struct CheckResult {
   std::string unit;             ///< of both: "ulp", "rad", "relative", "" (absolute)
   std::string truth;            ///< where the right answers come from: equation, paper
   std::string worst_input{};    ///< what gave the largest error, in digits that reproduce it
-  std::vector<Plot> plots{};
+  std::vector<Plot> plots{};    ///< error against input, for the reports
   std::vector<CheckPicture> pictures{};
   std::string kernel{};         ///< what was asked; left empty, it is the group's
 
