@@ -4,12 +4,16 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "device/interface.hpp"
 #include "reference/fresnel.hpp"
+#include "verify/error_profile.hpp"
 #include "verify/fresnel_inputs.hpp"
 #include "verify/fresnel_kernel.hpp"
 #include "verify/groups.hpp"
+#include "verify/textbook.hpp"
 
 namespace vitrum {
 namespace {
@@ -75,9 +79,7 @@ double bits_apart(float a, float b) {
 }
 
 struct AngleTally {
-  static constexpr size_t bins = 150;       // binades of the cosine, as the curve has them
   Worst R, T, balance, range, total, bits;
-  std::array<double, bins> R_by_binade{}, T_by_binade{};
 
   void merge(const AngleTally& other) {
     R.merge(other.R);
@@ -86,10 +88,6 @@ struct AngleTally {
     range.merge(other.range);
     total.merge(other.total);
     bits.merge(other.bits);
-    for (size_t k = 0; k < bins; ++k) {
-      R_by_binade[k] = std::max(R_by_binade[k], other.R_by_binade[k]);
-      T_by_binade[k] = std::max(T_by_binade[k], other.T_by_binade[k]);
-    }
   }
 };
 
@@ -126,9 +124,6 @@ void check_angles(FresnelKernel& border, const CheckContext& context, std::vecto
         sum.total.add((out(out_total, i) != 0) == truth.total_reflection ? 0 : 1, i);
         const kernel::Fresnel host = kernel::fresnel(constants, c);
         sum.bits.add(std::max(bits_apart(R, host.R), bits_apart(T, host.T)), i);
-        const auto bin = static_cast<size_t>(c > 0 ? std::clamp(std::ilogb(c) + 149, 0, 149) : 0);
-        sum.R_by_binade[bin] = std::max(sum.R_by_binade[bin], R_error);
-        sum.T_by_binade[bin] = std::max(sum.T_by_binade[bin], T_error);
       }
     });
     const Worst* found[] = {&tally.R, &tally.T, &tally.balance, &tally.range, &tally.total, &tally.bits};
@@ -141,21 +136,90 @@ void check_angles(FresnelKernel& border, const CheckContext& context, std::vecto
   const auto row = [&](const char* name, const Worst& worst, double bound, const char* unit, const char* truth, int input) {
     rows.push_back({name, worst.cases, worst.error, bound, unit, truth, worst_inputs[input]});
   };
-  const auto curve = [&](const std::array<double, AngleTally::bins>& errors) {
-    PlotLine line{"vitrum", {}};
-    for (size_t k = 0; k < errors.size(); ++k)
-      line.points.emplace_back(std::ldexp(1.0, static_cast<int>(k) - 149), errors[k]);
-    rows.back().plots.push_back({"", "cos_theta_i", "largest error [ulp]", {line}, true, false, rows.back().bound});
-  };
   row("interface/reflectance", all.R, 16, "ulp", "Fresnel (Born and Wolf 1.5.2), 113 bits", 0);
-  curve(all.R_by_binade);
   row("interface/transmittance", all.T, 8, "ulp", "the same by amplitudes t, cos > 1e-30", 1);
-  curve(all.T_by_binade);
   row("interface/R + T = 1", all.balance, 1e-6, "", "conservation of energy", 2);
   row("interface/range", all.range, 0, "values", "R, T, |r| in [0, 1], all finite", 3);
   row("interface/total reflection", all.total, 0, "decisions", "Snell, 113 bits", 4);
   row("interface/device and host", all.bits, rounds_as_host(context.device) ? 0 : 100, "ulp",
       "the same text compiled for the host", 5);
+}
+
+/// Errors of R and T in ulp by one input: vitrum's, and those of the forms in textbook.hpp.
+struct FormsTally {
+  static constexpr int least = -31, most = 2;  // binades of the input
+  ErrorProfile R{least, most}, R_by_cosines{least, most}, R_by_g{least, most}, T{least, most}, T_by_R{least, most};
+  void merge(const FormsTally& other) {
+    R.merge(other.R);
+    R_by_cosines.merge(other.R_by_cosines);
+    R_by_g.merge(other.R_by_g);
+    T.merge(other.T);
+    T_by_R.merge(other.T_by_R);
+  }
+};
+
+struct FormsInput {
+  Indices n;                    ///< floats, so that all forms have the same border
+  float cosine;
+  double by;                    ///< what the plot shows the errors against
+};
+
+/// Plots of R and T beside other forms, for the rows of reflectance and transmittance.
+template <typename Input>
+void compare_forms(FresnelKernel& border, const CheckContext& context, const char* where, const char* x, const Input& input,
+                   CheckResult& reflectance, CheckResult& transmittance) {
+  const uint32_t count = context.full ? 1'000'000 : 40'000;
+  FresnelInputs random(300);
+  std::vector<FormsInput> inputs;
+  Fields in(count, border_inputs);
+  for (uint32_t i = 0; i < count; ++i) {
+    inputs.push_back(input(random));
+    set_border(in, i, inputs[i].n, inputs[i].cosine);
+  }
+  const Fields out = border.run(in);
+  const auto tally = tallied<FormsTally>(count, [&](FormsTally& sum, uint32_t first, uint32_t last) {
+    for (uint32_t i = first; i < last; ++i) {
+      const auto& [n, c, by] = inputs[i];
+      const auto n_i = static_cast<float>(n.n_i), n_t = static_cast<float>(n.n_t);
+      const reference::Fresnel truth = reference::fresnel(n.n_i, n.n_t, c);
+      const auto R_error = [&](float R) { return std::abs(R - truth.R) / float_ulp(truth.R); };
+      const auto T_error = [&](float T) { return std::abs(T - truth.T) / float_ulp(truth.T); };
+      const float by_cosines = textbook::reflectance_by_cosines(n_i, n_t, c);
+      sum.R.add(by, R_error(out(out_R, i)));
+      sum.R_by_cosines.add(by, R_error(by_cosines));
+      sum.R_by_g.add(by, R_error(textbook::reflectance_by_g(n_i, n_t, c)));
+      sum.T.add(by, T_error(out(out_T, i)));
+      sum.T_by_R.add(by, T_error(1.0f - by_cosines));
+    }
+  });
+  constexpr double floor = 0.1;
+  reflectance.plots.push_back({std::string("Reflectance R, ") + where, x, "largest error [ulp]",
+                               {tally.R.line("vitrum", floor), tally.R_by_cosines.line("r_s and r_p by cosines", floor),
+                                tally.R_by_g.line("Cook and Torrance's g", floor)},
+                               true, true, reflectance.bound});
+  transmittance.plots.push_back({std::string("Transmittance T, ") + where, x, "largest error [ulp]",
+                                 {tally.T.line("vitrum", floor), tally.T_by_R.line("1 - R, R by cosines", floor)},
+                                 true, true, transmittance.bound});
+}
+
+void compare_with_textbook(FresnelKernel& border, const CheckContext& context, CheckResult& reflectance,
+                           CheckResult& transmittance) {
+  compare_forms(border, context, "into glass of n = 1.5, towards grazing", "cosine of the angle of incidence",
+                [](FresnelInputs& random) {
+                  const auto c = static_cast<float>(std::exp2(-30 * random.uniform()));
+                  return FormsInput{{1.0, 1.5}, c, c};
+                }, reflectance, transmittance);
+  compare_forms(border, context, "out of glass of n = 1.5, next to the critical angle", "distance from the critical cosine, relative",
+                [](FresnelInputs& random) {
+                  const double critical = std::sqrt(5.0) / 3, off = 0.34 * std::exp2(-22 * random.uniform());
+                  const auto c = static_cast<float>(std::min(critical * (1 + (random.below(2) ? off : -off)), 1.0));
+                  return FormsInput{{1.5, 1.0}, c, std::abs(c / critical - 1)};
+                }, reflectance, transmittance);
+  compare_forms(border, context, "into a medium of index n near 1, cosine .1 to 1", "n - 1",
+                [](FresnelInputs& random) {
+                  const auto n = static_cast<float>(1 + 3 * std::exp2(-24.5 * random.uniform()));
+                  return FormsInput{{1.0, n}, static_cast<float>(0.1 + 0.9 * random.uniform()), n - 1.0};
+                }, reflectance, transmittance);
 }
 
 struct CosineTally {
@@ -205,9 +269,10 @@ void check_every_cosine(const CheckContext& context, std::vector<CheckResult>& r
       worst_T.merge(tally.T);
     }
   }
-  rows.push_back({"interface/reflectance, every cosine", worst_R.cases, worst_R.error, 16, "ulp", "Fresnel in double", where_R});
+  rows.push_back({"interface/reflectance, every cosine", worst_R.cases, worst_R.error, 16, "ulp", "Fresnel in double", where_R,
+                  {}, {}, "checks/fresnel.cl: cosines"});
   rows.push_back({"interface/transmittance, every cosine", worst_T.cases, worst_T.error, 8, "ulp",
-                  "Fresnel in double, cos > 1e-30", where_T});
+                  "Fresnel in double, cos > 1e-30", where_T, {}, {}, "checks/fresnel.cl: cosines"});
 }
 
 /// Brewster's angle, equal indices, cosines that are none, and T from both sides.
@@ -348,6 +413,7 @@ std::vector<CheckResult> check_interface(const CheckContext& context) {
   FresnelKernel border(context, "border", border_outputs);
   std::vector<CheckResult> rows;
   check_angles(border, context, rows);
+  compare_with_textbook(border, context, rows[0], rows[1]);
   check_special_angles(border, rows);
   check_directions(border, context, rows);
   if (context.full) check_every_cosine(context, rows);

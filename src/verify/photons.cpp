@@ -11,6 +11,7 @@
 #include "reference/ball_caustic.hpp"
 #include "reference/pool.hpp"
 #include "reference/quadrature.hpp"
+#include "verify/caustic_picture.hpp"
 #include "verify/estimates.hpp"
 #include "verify/groups.hpp"
 #include "verify/photon_run.hpp"
@@ -162,6 +163,30 @@ class PhotonChecks {
     }
   }
 
+  /// How the error of an encircled flux falls with the number of photons: a plot.
+  void convergence() {
+    const reference::BallOnAxis truth{1.0, 1.5, 0.0, 2.0, infinity};
+    constexpr double radius = 0.5;
+    const double flux = reference::encircled_flux(truth, radius, reference::Orders::all);
+    PlotLine sequence{"vitrum", {}}, independent{"vitrum, independent photons", {}}, chance{"theory of independent photons", {}};
+    for (const uint64_t count : {1u << 10, 1u << 12, 1u << 14, 1u << 16, 1u << 18, 1u << 20}) {
+      for (PlotLine* line : {&sequence, &independent}) {
+        Scene scene = ball_over_plane(1.5, Spectrum(0.0), infinity);
+        if (line == &independent) scene.photons.sampling = Sampling::independent;
+        double squares = 0.0;
+        const Landed landed = shoot(scene, count, {radius}, "convergence");
+        for (const double found : landed.within[0][0])
+          squares += (found / flux - 1) * (found / flux - 1) / replicates;
+        line->points.emplace_back(count, std::sqrt(squares));
+      }
+      // All shots have the same power; what is reflected inside weighs less, but that is little.
+      chance.points.emplace_back(count, std::sqrt((1 - flux) / flux / static_cast<double>(count)));
+    }
+    convergence_ = {printed("Flux of a ball's caustic within half its radius, beam, n = 1.5: exponents %.2f and %.2f",
+                            fitted_exponent(sequence.points), fitted_exponent(independent.points)),
+                    "photons", "error (RMS of 32 runs), relative", {sequence, independent, chance}, true, true};
+  }
+
   /// Photons of an emissive mesh of 1 W, through a ball of air in its way.
   void panel() {
     const std::vector<double> panel_radii = {0.2, 0.35, 0.5};
@@ -203,6 +228,7 @@ class PhotonChecks {
     add(absorbed_, "photons/absorbed in a ball", "2 int T(1-tau)/(1-R tau) sin cos dtheta, quadrature", count_);
     add(reflected_, "photons/reflected by a ball", "hemispherical reflectance, closed form", count_);
     add(encircled_, "photons/encircled flux", "the ball's caustic by quadrature, all orders", count_);
+    if (!convergence_.lines.empty()) rows[rows.size() - 2].plots.push_back(convergence_);
     add(pool_, "photons/pool", "r = h tan + t tan theta_t by quadrature; I T tau / (h + t/n)^2", count_);
     add(mesh_, "photons/mesh ball", "the ball's: facets of two sizes, extrapolated by 1/n^2", mesh_count_);
     add(panel_, "photons/emissive mesh", "Lambert's polygon by quadrature; pi times the solid angle", mesh_count_);
@@ -218,7 +244,7 @@ class PhotonChecks {
   static constexpr std::array<double, 4> radii = {0.1, 0.2, 0.5, 1.0};
   static std::vector<double> all_radii() { return {radii.begin(), radii.end()}; }
   static constexpr double axis_radius = 0.15;
-  static constexpr double all_shots = 16;     // calls of shoot() by check_photons
+  static constexpr double all_shots = 28;     // calls of shoot() by check_photons in full
 
   /// Shoots all replicates and checks their balance, and that of all of them together.
   Landed shoot(Scene scene, uint64_t count, const std::vector<double>& within, const std::string& what) {
@@ -274,6 +300,7 @@ class PhotonChecks {
   std::string where_;
   Estimates absorbed_, reflected_, encircled_, mesh_, pool_, panel_;
   std::vector<std::pair<double, double>> facets_;
+  Plot convergence_;
 };
 
 }  // namespace
@@ -292,7 +319,11 @@ std::vector<CheckResult> check_photons(const CheckContext& context) {
   checks.mesh(1.5, {0.0, 0.5, 2.0}, infinity);
   checks.mesh(1.5, {0.0, 0.5, 2.0}, 3.0);
   checks.panel();
-  return checks.rows();
+  if (!context.full) return checks.rows();
+  checks.convergence();
+  std::vector<CheckResult> rows = checks.rows();
+  rows.push_back(check_caustic_picture(context));
+  return rows;
 }
 
 }  // namespace vitrum
