@@ -15,6 +15,7 @@
 #include "core/suggest.hpp"
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
+#include "verify/run_checks.hpp"
 
 namespace vitrum {
 namespace {
@@ -107,33 +108,22 @@ int run_verify(const VerifyArguments& arguments) {
     throw Error({"--only devices"}, "there is no second device",
                 "name one with --against, as `vitrum devices` lists them");
   prepare_opencl(0);
-  Device device(arguments.device);
-  std::optional<Device> other;
-  if (!arguments.against.empty()) other.emplace(arguments.against);
-  std::printf("%s, %s\n", device.info().name.c_str(), device.info().platform.c_str());
-  if (other) std::printf("against %s, %s\n", other->info().name.c_str(), other->info().platform.c_str());
+  VerifyRun run;
+  run.full = arguments.full;
+  run.device = Device(arguments.device).info();
+  std::printf("%s, %s\n", run.device.name.c_str(), run.device.platform.c_str());
+  if (!arguments.against.empty()) {
+    run.other = Device(arguments.against).info();
+    std::printf("against %s, %s\n", run.other->name.c_str(), run.other->platform.c_str());
+  }
   std::printf("%-36s %10s  %9s %9s  %-15s %-4s  %s\n", "check", "cases", "worst", "bound", "unit", "", "truth");
   std::fflush(stdout);
-
-  VerifyRun run;
-  run.device = device.info();
-  if (other) run.other = other->info();
-  run.full = arguments.full;
   {
     Progress progress("verify");
     const bool was_quiet = quiet();
     set_quiet(true);            // the pictures that are rendered on the way are nobody's business
-    double total = 0.0, done = 0.0;
-    for (const CheckGroup& group : groups) total += group.full_share;
-    for (const CheckGroup& group : groups) {
-      const auto within = [&](double part) { progress.update((done + part * group.full_share) / total); };
-      within(0.0);
-      for (CheckResult& result : group.run({device, arguments.device, arguments.kernels, arguments.full, other ? &*other : nullptr, within})) {
-        if (result.kernel.empty()) result.kernel = group.kernels;
-        run.results.push_back(std::move(result));
-      }
-      done += group.full_share;
-    }
+    run.results = run_checks(groups, {arguments.device, arguments.against, arguments.kernels, arguments.full},
+                             [&](double done) { progress.update(done); });
     set_quiet(was_quiet);
   }
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

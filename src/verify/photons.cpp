@@ -236,7 +236,8 @@ class PhotonChecks {
     const double order = -fitted_exponent(facets_);
     rows.push_back({"photons/mesh ball: facets", facets_.size(), std::abs(order - 2), context_.full ? 0.1 : 0.25,
                     "of the order", "absorbed: the ball's, off by ~ 1/n^2 for n rings", printed("order %.3f", order),
-                    {{"", "rings", "deviation", {{"vitrum", facets_}}, true, true}}});
+                    {{"Facets: absorption of a ball as a mesh, off the ball's", "rings of facets", "deviation, of the light",
+                      {{"vitrum", facets_}}, true, true}}});
     return rows;
   }
 
