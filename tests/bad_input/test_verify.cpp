@@ -24,6 +24,7 @@ void check_caught(const BrokenKernels& kernels, const std::vector<std::string>& 
   for (const std::string& check : checks) {
     CAPTURE(check);
     CHECK(contains(run.out, "FAIL " + check + ": "));
+    CHECK(contains(run.out, "; kernels/"));
   }
 }
 
@@ -31,16 +32,20 @@ void check_caught(const BrokenKernels& kernels, const std::vector<std::string>& 
 
 TEST_CASE("verify passes, and its report holds what the table has") {
   const TemporaryFolder folder;
-  const std::string json = folder / "v.json", html = folder / "v.html";
+  const std::string json = folder / "v.json", html = folder / "v.html", markdown = folder / "v.md";
   const Ended run = vitrum_run({"verify", "--only", "interface", "--only", "absorption", "--only", "slab-and-ball", "--report",
-                                json, "--report-html", html});
+                                json, "--report-html", html, "--report-markdown", markdown});
   CHECK_MESSAGE(run.code == 0, run.out);
   CHECK(contains(run.out, " 0 failed"));
   const auto report = nlohmann::json::parse(file_bytes(json));
   CHECK(report["mode"] == "quick");
   CHECK(report["checks"].size() == 22);
   for (const auto& check : report["checks"]) CHECK(check["passed"] == true);
+  for (const auto& check : report["checks"]) CHECK_FALSE(check["kernel"].get<std::string>().empty());
   CHECK(contains(file_bytes(html), "<svg"));
+  CHECK(contains(file_bytes(markdown), "checks, all hold"));
+  CHECK(contains(file_bytes(markdown), "](v/interface-reflectance-plot1.svg)"));
+  CHECK(contains(file_bytes(folder / "v/interface-reflectance-plot1.svg"), ">Cook and Torrance's g</text>"));
 }
 
 TEST_CASE("verify catches a wrong formula and names the check") {
