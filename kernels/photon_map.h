@@ -35,10 +35,12 @@ typedef struct {
   uint stride;                 // of the sorted photons' fields
 } BucketData;
 
-// Runs have room for a packet beyond their photons, so that packets may be written whole.
-#define RUN_MARGIN 16u
+// A run may store more than the photons that it shoots, since some branch off: so many. And there is room for a packet
+// beyond, so that packets may be written whole.
+FUNCTION uint most_branched(uint run_length) { return run_length / 4u; }
+FUNCTION uint photons_stride(uint run_length) { return run_length + most_branched(run_length) + 16u; }
 FUNCTION ulong photon_in_run(uint run_length, uint run, uint field) {
-  return ((ulong)run * PHOTON_ROW + field) * (run_length + RUN_MARGIN);
+  return ((ulong)run * PHOTON_ROW + field) * photons_stride(run_length);
 }
 
 // Cell size [m] as its inverse; log2 of the number of cells along each axis, and of those in a bucket.

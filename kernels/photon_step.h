@@ -33,17 +33,28 @@ FUNCTION void add_power(Tally* tally, const Mask which, const Vec3 power) {
   add_compensated(&tally->sum.z, &tally->rest.z, which ? power.z : 0.0f);
 }
 
-// What the surface does to the living photons: their outcome, and with that ALIVE their next ray. Adds what the media
-// before it took to `absorbed`.
-FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, Photons* photons,
-                       Tally* absorbed) {
+// Adds to `photons->power` and tallies, and more: what the surface does to the living photons. Returns their outcome, and
+// with that ALIVE their next ray. Adds what the media before it took to `absorbed`.
+//
+// Where light is split, a photon goes the way of the greater share. Among `splits`, its power is that share, and a new
+// photon with all of the power goes the other way by chance, as often as its share says: so what most of the light does
+// is not left to chance, which would make holes in the caustic, and no photon grows faint. Those are in `branched`, and
+// `split_off` is the power that this gave them less what it took: 0 on average. Others take all of their power along and
+// go the lesser way by that chance.
+FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, const Mask splits,
+                       Photons* photons, Photons* branched, Tally* absorbed, Tally* split_off) {
   const Mask alive = photons->alive;
   const Vec3 direction = photons->direction;
   const Uint stack = photons->stack;
   const Mask entering = surface->entering;
+  const Mask is_last = photons->depth + 1 >= max_depth;
   Mask front = entering;       // goes on before the surface
+  Mask front_branched = entering;
   Uint outcome = OUTCOME_LOST;
   Vec3 next = direction;
+  branched->alive = 0;
+  branched->direction = direction;
+  branched->stack = stack;
 
   // [photon]
   const Uint keys = encounter_keys(surface, stack);
@@ -72,14 +83,30 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
       Float u = unit_float(photons->path);
       if (ANY(e.here & (first_two == 0)))
         u = first_two ? u : unit_float(hash_pair(photons->path, photons->depth));
-      const Mask reflect = u < split.R;
+      const Mask mostly_reflects = split.R > split.T;
+      const Float lesser = mostly_reflects ? split.T : split.R;
+      const Mask drawn = u < lesser;
+      const Mask parts = e.here & splits & (is_last == 0);
+      const Mask branches = parts & drawn;
+      const Mask reflect = mostly_reflects != ((drawn & (parts == 0)) != 0);
       next = select3(e.here, split_chosen(&split, reflect, direction), next);
       front = (e.here & (reflect == 0)) ? entering == 0 : front;
       photons->stack =
           e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : photons->stack;
-      const Float rest = (reflect ? u : u - split.R) / (reflect ? split.R : 1.0f - split.R);
+      if (ANY(branches)) {
+        branched->alive |= branches;
+        branched->power = select3(branches, photons->power, branched->power);
+        branched->direction = select3(branches, split_chosen(&split, mostly_reflects == 0, direction), branched->direction);
+        front_branched = (branches & mostly_reflects) ? entering == 0 : front_branched;
+        branched->stack = branches ? (mostly_reflects ? (Uint)split.stack_refracted : (Uint)split.stack_reflected)
+                                   : branched->stack;
+      }
+      add_power(split_off, parts, scale3((drawn ? (Float)1.0f : (Float)0.0f) - lesser, photons->power));
+      photons->power = select3(parts, scale3(1.0f - lesser, photons->power), photons->power);
+      const Float rest = (drawn ? u : u - lesser) / (drawn ? lesser : 1.0f - lesser);
       // The low bits, which no choice has used, serve for the hash.
       const Uint rest_bits = AS_UINT(TO_INT(smaller(rest, 0.99999994f) * 16777216.0f)) << 8 | (photons->path & 0xffu);
+      branched->path = hash_pair(photons->path, photons->depth + 0x80000000u);
       photons->path = (e.here & first_two) ? rest_bits : photons->path;
       outcome = e.here ? OUTCOME_ALIVE : outcome;
 #endif
@@ -89,7 +116,7 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
       outcome = e.here ? (diffuse ? caustic : (Uint)OUTCOME_ABSORBED) : outcome;
     }
   }
-  const Mask spent = (photons->depth + 1 >= max_depth) | (max_channel(photons->power) <= 0.0f);
+  const Mask spent = is_last | (max_channel(photons->power) <= 0.0f);
   outcome = (outcome == OUTCOME_ALIVE) & spent ? OUTCOME_CUT : outcome;
   // [/photon]
 
@@ -100,6 +127,10 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   // Those that end keep the direction that they came from.
   photons->direction = next;
   photons->alive = alive & (outcome == OUTCOME_ALIVE);
+  branched->depth = photons->depth;
+  branched->origin = photons->origin;
+  branched->t_min = photons->t_min;
+  branched->from = leaving(surface, front_branched);
   return alive ? outcome : (Uint)OUTCOME_ALIVE;
 }
 

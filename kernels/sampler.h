@@ -7,7 +7,7 @@
 //   camera   0, 1  place in the pixel;  the place on light l after d surfaces on path h: a hash of (pixel, h, l)
 //
 // Low-discrepancy: Kronecker's sequence, u_d(i) = frac(shift_d + i alpha_d) in 64-bit fixed point, alpha from the
-// generalised golden ratio (Roberts 2018, R2, R3, ...); each replicate has its own random shift.
+// generalised golden ratio (Roberts 2018: R2, R4); each replicate has its own random shift.
 #ifndef VITRUM_SAMPLER_H
 #define VITRUM_SAMPLER_H
 

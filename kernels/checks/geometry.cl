@@ -93,8 +93,10 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
     photons.path = hash_pair(number, (Uint)(aim->seed + 77u));
     photons.depth = 0;
     photons.alive = (Mask)-1;
-    Tally absorbed;
+    Photons branched;
+    Tally absorbed, split_off;
     absorbed.sum = absorbed.rest = make_vec3(0.0f, 0.0f, 0.0f);
+    split_off = absorbed;
     while (ANY(photons.alive)) {
       RayPacket packet = start;
       packet.origin = photons.origin;
@@ -112,7 +114,7 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
       note_wrong(result, &start, wrong);
       result->events += lanes_set(photons.alive);
       photons.alive &= wrong == 0;
-      interact(scene, &surface, max_depth, &photons, &absorbed);
+      interact(scene, &surface, max_depth, 0, &photons, &branched, &absorbed, &split_off);
     }
     result->rays += WIDTH;
   }

@@ -7,7 +7,7 @@
 // places: for each bucket, the row of the run's next photon.
 BODY move_run(const uint stored, const uint run_length, const uint bucket_shift, __global const float* restrict fields,
               __global uint* restrict places, __global float8* restrict rows) {
-  const uint stride = run_length + RUN_MARGIN;
+  const uint stride = photons_stride(run_length);
   __global const float* cells = fields + PHOTON_CELL * stride;
   const uint ahead = 32;
   for (uint i = 0; i < stored; ++i) {

@@ -63,11 +63,13 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
 }
 
 // Photons that wait for a packet of their own: field f of the k-th at [f][k]. A packet is emitted only while fewer than
-// WIDTH wait in either queue, and one that is taken puts no more back than it had; so less than 3 WIDTH wait in both.
+// WIDTH wait in either queue, and one that is taken puts no more back than it had. Those that branch off come on top: at
+// most WIDTH at a time, while no more than WAITING_ENOUGH wait.
 #define WAITING_FIELDS 14
+#define WAITING_ENOUGH (3 * WIDTH)
 
 typedef struct {
-  float fields[WAITING_FIELDS][3 * WIDTH];
+  float fields[WAITING_FIELDS][WAITING_ENOUGH + 2 * WIDTH];
   uint count;
 } Waiting;
 
@@ -130,7 +132,7 @@ FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Ma
   values[PHOTON_POWER + 2] = photons->power.z;
   values[PHOTON_CELL] = AS_FLOAT(cells_of(grid, photons->origin));
   __global float* to = fields + stored;
-  const uint stride = run_length + RUN_MARGIN;
+  const uint stride = photons_stride(run_length);
 #if PACKS_LANES
   for (uint field = 0; field < PHOTON_ROW; ++field) pack_lanes(which, values[field], to + field * stride);
 #else
@@ -147,14 +149,15 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
                 const float upstream, const uint first, const uint last, const uint run_length, const uint max_depth,
                 const GridData grid, const uint buckets, __global float* restrict fields,
                 __global uint* restrict counts, __global PhotonRunData* restrict report) {
-  Tally power[OUTCOMES];
-  Uint ended[OUTCOMES];
-  for (uint k = 0; k < OUTCOMES; ++k) {
+  Tally power[TALLIES];
+  Uint ended[TALLIES];
+  for (uint k = 0; k < TALLIES; ++k) {
     power[k].sum = power[k].rest = make_vec3(0.0f, 0.0f, 0.0f);
     ended[k] = 0;
   }
   Uint surfaces = 0;
   uint stored = 0;
+  uint n_branched = 0;
   uint rejected = 0;
   Vec3 low = make_vec3(INFINITY, INFINITY, INFINITY);
   Vec3 high = negate3(low);
@@ -185,7 +188,16 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
       packet.t_max = INFINITY;
       const SurfacePacket surface = trace(scene, packet, photons.from, photons.alive, 0, &photons.stack);
       const Vec3 arrived = photons.direction;
-      const Uint outcome = interact(scene, &surface, max_depth, &photons, &power[OUTCOME_ABSORBED]);
+      Photons branched;
+      const int has_room = waiting[0].count <= WAITING_ENOUGH && waiting[1].count <= WAITING_ENOUGH &&
+                           n_branched + WIDTH <= most_branched(run_length);
+      const Uint outcome = interact(scene, &surface, max_depth, has_room ? (Mask)-1 : (Mask)0, &photons, &branched,
+                                    &power[OUTCOME_ABSORBED], &power[TALLY_SPLIT]);
+      if (ANY(branched.alive)) {
+        n_branched += lanes_set(branched.alive);
+        wait_in(&waiting[0], &branched, branched.alive & (branched.stack == 0));
+        wait_in(&waiting[1], &branched, branched.alive & (branched.stack != 0));
+      }
       for (uint k = OUTCOME_ALIVE + 1; k < OUTCOMES; ++k) {
         Mask here = outcome == k;
         if (!ANY(here)) continue;
@@ -220,7 +232,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     } while (n_alive > WIDTH / 2);
   }
 
-  for (uint k = 0; k < OUTCOMES; ++k) {
+  for (uint k = 0; k < TALLIES; ++k) {
     total_of_lanes(power[k].sum.x, power[k].rest.x, &report->power[k][0], &report->power_rest[k][0]);
     total_of_lanes(power[k].sum.y, power[k].rest.y, &report->power[k][1], &report->power_rest[k][1]);
     total_of_lanes(power[k].sum.z, power[k].rest.z, &report->power[k][2], &report->power_rest[k][2]);
@@ -229,6 +241,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     report->photons[k] = photons_ended;
   }
   report->photons[OUTCOME_ALIVE] = last - first;
+  report->photons[TALLY_SPLIT] = n_branched;
   uint surfaces_met = 0;
   for (uint lane = 0; lane < WIDTH; ++lane) surfaces_met += LANE(surfaces, uint, lane);
   report->surfaces = surfaces_met;
@@ -241,7 +254,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   report->high[2] = -least_of_lanes(-high.z);
 
   for (uint bucket = 0; bucket < buckets; ++bucket) counts[bucket] = 0;
-  __global const float* cells = fields + PHOTON_CELL * (run_length + RUN_MARGIN);
+  __global const float* cells = fields + PHOTON_CELL * photons_stride(run_length);
   for (uint i = 0; i < stored; ++i) ++counts[as_uint(cells[i]) >> grid.bucket_shift];
 }
 

@@ -112,10 +112,11 @@ std::string render_report(const Scene& scene, const Device& device, const Render
     const PhotonBalance& p = result.photons;
     json["photons"] = {{"shot", p.photons_shot},         {"stored", p.photons_stored}, {"absorbed", p.photons_absorbed},
                        {"direct", p.photons_direct},     {"lost", p.photons_lost},     {"cut", p.photons_cut},
-                       {"rejected", p.photons_rejected}};
+                       {"branched", p.photons_branched}, {"rejected", p.photons_rejected}};
     json["photon_power_watts"] = {{"shot", numbers(p.shot)},     {"stored", numbers(p.stored)},
                                   {"absorbed", numbers(p.absorbed)}, {"direct", numbers(p.direct)},
                                   {"lost", numbers(p.lost)},     {"cut", numbers(p.cut)},
+                                  {"split", numbers(p.split)},
                                   {"not_aimed", numbers(p.not_aimed)}};
     json["photon_estimate"] = photon_estimate(scene, result);
   }

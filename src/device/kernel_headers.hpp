@@ -36,7 +36,7 @@ static_assert(sizeof(LightFace) == 32);
 static_assert(sizeof(TextureData) == 48);
 static_assert(sizeof(CameraData) == 72);
 static_assert(sizeof(CameraSample) == 24);
-static_assert(sizeof(PhotonRunData) == 200);
+static_assert(sizeof(PhotonRunData) == 228);
 static_assert(sizeof(GridData) == 20);
 static_assert(sizeof(BucketData) == 8);
 

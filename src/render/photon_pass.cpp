@@ -188,6 +188,7 @@ struct PhotonPass::State {
     balance.direct += watts(OUTCOME_DIRECT);
     balance.lost += watts(OUTCOME_LOST);
     balance.cut += watts(OUTCOME_CUT);
+    balance.split += watts(TALLY_SPLIT);
     balance.not_aimed -= watts(OUTCOME_ALIVE);
     balance.photons_shot += run.photons[OUTCOME_ALIVE];
     balance.photons_stored += run.photons[OUTCOME_STORED];
@@ -195,6 +196,7 @@ struct PhotonPass::State {
     balance.photons_direct += run.photons[OUTCOME_DIRECT];
     balance.photons_lost += run.photons[OUTCOME_LOST];
     balance.photons_cut += run.photons[OUTCOME_CUT];
+    balance.photons_branched += run.photons[TALLY_SPLIT];
     balance.photons_rejected += run.rejected;
     balance.surfaces_met += run.surfaces;
   }

@@ -10,7 +10,7 @@
 namespace vitrum {
 
 /// Power by what became of it [W], red, green and blue. Each is summed by itself, so that the balance
-/// shot = stored + absorbed + direct + lost + cut is a check and not a definition.
+/// shot + split = stored + absorbed + direct + lost + cut is a check and not a definition.
 struct PhotonBalance {
   Spectrum shot{0.0};           ///< aimed at casters and emitted
   Spectrum stored{0.0};         ///< in the photon map
@@ -18,9 +18,10 @@ struct PhotonBalance {
   Spectrum direct{0.0};         ///< met a diffuse surface first: direct light's business
   Spectrum lost{0.0};           ///< left the scene
   Spectrum cut{0.0};            ///< by the depth limit
+  Spectrum split{0.0};          ///< what photons that branched off took along, less their chance to: 0 on average
   Spectrum not_aimed{0.0};      ///< sent by the lights elsewhere; infinite where a light has no finite power
   uint64_t photons_shot = 0, photons_stored = 0, photons_absorbed = 0, photons_direct = 0, photons_lost = 0;
-  uint64_t photons_cut = 0;
+  uint64_t photons_cut = 0, photons_branched = 0;
   uint64_t photons_rejected = 0;  ///< not stored since their place, direction or power is not finite; none expected
   uint64_t surfaces_met = 0;    ///< rays traced
 };

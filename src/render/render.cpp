@@ -192,7 +192,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     result.photons = photon_pass->balance();
     for (Spectrum PhotonBalance::*power : {&PhotonBalance::shot, &PhotonBalance::stored, &PhotonBalance::absorbed,
                                            &PhotonBalance::direct, &PhotonBalance::lost, &PhotonBalance::cut,
-                                           &PhotonBalance::not_aimed})
+                                           &PhotonBalance::split, &PhotonBalance::not_aimed})
       result.photons.*power /= static_cast<double>(passes);
   }
   result.rays = camera.counts();

@@ -31,17 +31,23 @@ std::array<kernel::SequenceData, PHOTON_DIMENSIONS> photon_sequences(Sampling sa
                                                                      uint64_t first, bool area_light) {
   std::array<kernel::SequenceData, PHOTON_DIMENSIONS> dimensions{};
   const uint64_t key = mix_bits(mix_bits(seed, replicate), sequence);
-  const int joint = area_light ? 5 : 3;
-  const long double ratio = generalised_golden_ratio(joint);
-  for (int d = 0; d < PHOTON_DIMENSIONS; ++d) {
-    kernel::SequenceData& data = dimensions[static_cast<size_t>(d)];
-    const uint64_t shift = mix_bits(key, static_cast<uint64_t>(d) + 1);
+  // Direction and place on an area light are spread evenly together, in the plane or in four dimensions. Choices along
+  // the path (2) and of a mesh light's face (5) run by themselves: their projections would cost the others evenness.
+  const long double ratio = generalised_golden_ratio(area_light ? 4 : 2);
+  const std::array<long double, PHOTON_DIMENSIONS> steps = {1 / ratio,
+                                                            1 / (ratio * ratio),
+                                                            std::sqrt(2.0L),
+                                                            std::pow(ratio, -3.0L),
+                                                            std::pow(ratio, -4.0L),
+                                                            std::sqrt(3.0L)};
+  for (size_t d = 0; d < PHOTON_DIMENSIONS; ++d) {
+    kernel::SequenceData& data = dimensions[d];
+    const uint64_t shift = mix_bits(key, d + 1);
     if (sampling == Sampling::independent) {
       data.start = mix_bits(shift, first);
       data.alpha = 0;
     } else {
-      // The choice of a mesh light's face (5) runs on its own.
-      data.alpha = d < joint ? fixed_point(std::pow(ratio, -(d + 1.0L))) : fixed_point(std::sqrt(3.0L));
+      data.alpha = fixed_point(steps[d]);
       data.start = shift + first * data.alpha;
     }
   }

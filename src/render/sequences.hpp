@@ -11,7 +11,7 @@ namespace vitrum {
 
 /// The dimensions of one photon sequence from photon `first` on. `sequence` tells apart pairs of light and caster,
 /// `replicate` the randomised copies of the same sequence. `area_light`: places on the light are needed too, so that
-/// five dimensions are spread evenly together instead of three.
+/// four dimensions are spread evenly together instead of two.
 std::array<kernel::SequenceData, PHOTON_DIMENSIONS> photon_sequences(Sampling sampling, uint64_t seed,
                                                                      uint32_t replicate, uint32_t sequence,
                                                                      uint64_t first, bool area_light);

@@ -219,7 +219,10 @@ class PhotonChecks {
   std::vector<CheckResult> rows() const {
     std::vector<CheckResult> rows;
     rows.push_back({"photons/conservation", balance_.cases, balance_.error, 1e-6, "relative",
-                    "shot = stored + absorbed + direct + lost + cut", where_});
+                    "shot + split = stored + absorbed + direct + lost + cut", where_});
+    branching_.rows("photons/branching", "photons that branch off: as often as their share of the light says",
+                    0.5 / std::sqrt(static_cast<double>(replicates * std::min(count_, mesh_count_))), "of the whole",
+                    "standard error of independent photons", rows);
     // The error is at most that of as many independent photons that are stored or not by the toss of a coin.
     const auto add = [&](const Estimates& estimates, const char* name, const char* truth, uint64_t count) {
       estimates.rows(name, truth, 0.5 / std::sqrt(static_cast<double>(replicates * count)), "of the whole",
@@ -254,6 +257,7 @@ class PhotonChecks {
     Landed landed;
     landed.within.resize(within.size());
     PhotonBalance before;
+    std::vector<double> split;
     for (uint32_t replicate = 0; replicate < replicates; ++replicate) {
       const std::vector<cl_float8> photons = run.shoot(replicate, count);
       const PhotonBalance after = run.balance();
@@ -269,9 +273,12 @@ class PhotonChecks {
         for (size_t k = 0; k < within.size(); ++k) landed.within[k][c].push_back(sums[k][c]);
       }
       check_balance(before, after, what + printed(", replicate %u", replicate));
+      split.push_back((after.split.x - before.split.x) / (after.shot.x - before.shot.x));
       before = after;
     }
     check_balance({}, before, what + ", all replicates");
+    // In balls of air there is nothing to branch off.
+    if (std::any_of(split.begin(), split.end(), [](double share) { return share != 0; })) branching_.add(split, 0.0, 0.0, what);
     context_.progress(static_cast<double>(++shots_) / all_shots);
     return landed;
   }
@@ -287,7 +294,8 @@ class PhotonChecks {
       const auto power = [&](Spectrum PhotonBalance::*term) { return (after.*term)[c] - (before.*term)[c]; };
       const double ends = power(&PhotonBalance::stored) + power(&PhotonBalance::absorbed) + power(&PhotonBalance::direct) +
                           power(&PhotonBalance::lost) + power(&PhotonBalance::cut);
-      const double error = std::abs(ends / power(&PhotonBalance::shot) - 1);
+      const double begun = power(&PhotonBalance::shot) + power(&PhotonBalance::split);
+      const double error = std::abs(ends / begun - 1);
       if (!(error <= balance_.error)) where_ = what + printed(", channel %d", c);
       balance_.add(error, balance_.cases);
     }
@@ -299,7 +307,7 @@ class PhotonChecks {
   int fine_rings_;
   Worst balance_;
   std::string where_;
-  Estimates absorbed_, reflected_, encircled_, mesh_, pool_, panel_;
+  Estimates branching_, absorbed_, reflected_, encircled_, mesh_, pool_, panel_;
   std::vector<std::pair<double, double>> facets_;
   Plot convergence_;
 };
