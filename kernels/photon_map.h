@@ -35,10 +35,9 @@ typedef struct {
   uint stride;                 // of the sorted photons' fields
 } BucketData;
 
-// A run may store more than the photons that it shoots, since some branch off: so many. And there is room for a packet
-// beyond, so that packets may be written whole.
-FUNCTION uint most_branched(uint run_length) { return run_length / 4u; }
-FUNCTION uint photons_stride(uint run_length) { return run_length + most_branched(run_length) + 16u; }
+// A run may store two photons for each that it shoots, since one may branch off. And there is room for a packet beyond, so
+// that packets may be written whole.
+FUNCTION uint photons_stride(uint run_length) { return 2u * run_length + 16u; }
 FUNCTION ulong photon_in_run(uint run_length, uint run, uint field) {
   return ((ulong)run * PHOTON_ROW + field) * photons_stride(run_length);
 }

@@ -11,9 +11,13 @@ typedef struct {
   Vec3 power;                  // [W]
   Float t_min;
   Uint stack, from, path;
-  Uint depth;                  // surfaces met
+  Uint history;                // surfaces met; HAS_BRANCHED: a photon has branched off this one, or this one off another
   Mask alive;
 } Photons;
+
+#define HAS_BRANCHED 0x80000000u
+
+FUNCTION Uint surfaces_met(const Photons* photons) { return photons->history & ~HAS_BRANCHED; }
 
 // A sum of powers with what its roundings lost (Kahan), in each lane.
 typedef struct {
@@ -36,18 +40,19 @@ FUNCTION void add_power(Tally* tally, const Mask which, const Vec3 power) {
 // Adds to `photons->power` and tallies, and more: what the surface does to the living photons. Returns their outcome, and
 // with that ALIVE their next ray. Adds what the media before it took to `absorbed`.
 //
-// Where light is split, a photon goes the way of the greater share. Among `splits`, its power is that share, and a new
-// photon with all of the power goes the other way by chance, as often as its share says: so what most of the light does
-// is not left to chance, which would make holes in the caustic, and no photon grows faint. Those are in `branched`, and
-// `split_off` is the power that this gave them less what it took: 0 on average. Others take all of their power along and
-// go the lesser way by that chance.
-FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, const Mask splits,
+// Where light is split, a photon goes the way of the greater share, and its power is that share. The other way goes, by
+// chance, as often as its share says, a photon with all of the power. So what most of the light does is not left to
+// chance, which would make holes in the caustic. Those that branch off are in `branched`, and `split_off` is the power
+// that this gave less what it took: 0 on average. Once a photon has branched, and where `branches` is 0, it takes all of
+// its power along and itself goes the lesser way by that chance: so from each photon come two at most.
+FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, const int branches,
                        Photons* photons, Photons* branched, Tally* absorbed, Tally* split_off) {
   const Mask alive = photons->alive;
   const Vec3 direction = photons->direction;
   const Uint stack = photons->stack;
   const Mask entering = surface->entering;
-  const Mask is_last = photons->depth + 1 >= max_depth;
+  const Uint depth = surfaces_met(photons);
+  const Mask is_last = depth + 1 >= max_depth;
   Mask front = entering;       // goes on before the surface
   Mask front_branched = entering;
   Uint outcome = OUTCOME_LOST;
@@ -79,40 +84,41 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
       const Split split = split_at_dielectric(scene, e, surface, direction);
       // One random number serves the first two choices: what a choice leaves of it is uniform again. Later ones are
       // drawn anew, before its bits run out.
-      const Mask first_two = photons->depth < 2;
+      const Mask first_two = depth < 2;
       Float u = unit_float(photons->path);
       if (ANY(e.here & (first_two == 0)))
-        u = first_two ? u : unit_float(hash_pair(photons->path, photons->depth));
+        u = first_two ? u : unit_float(hash_pair(photons->path, depth));
       const Mask mostly_reflects = split.R > split.T;
       const Float lesser = mostly_reflects ? split.T : split.R;
       const Mask drawn = u < lesser;
-      const Mask parts = e.here & splits & (is_last == 0);
-      const Mask branches = parts & drawn;
-      const Mask reflect = mostly_reflects != ((drawn & (parts == 0)) != 0);
+      const Mask splits = branches ? e.here & ((photons->history & HAS_BRANCHED) == 0) & (is_last == 0) : (Mask)0;
+      const Mask leaves = splits & drawn;
+      const Mask reflect = mostly_reflects != ((drawn & (splits == 0)) != 0);
       next = select3(e.here, split_chosen(&split, reflect, direction), next);
       front = (e.here & (reflect == 0)) ? entering == 0 : front;
       photons->stack =
           e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : photons->stack;
-      if (ANY(branches)) {
-        branched->alive |= branches;
-        branched->power = select3(branches, photons->power, branched->power);
-        branched->direction = select3(branches, split_chosen(&split, mostly_reflects == 0, direction), branched->direction);
-        front_branched = (branches & mostly_reflects) ? entering == 0 : front_branched;
-        branched->stack = branches ? (mostly_reflects ? (Uint)split.stack_refracted : (Uint)split.stack_reflected)
-                                   : branched->stack;
+      if (ANY(leaves)) {
+        branched->alive |= leaves;
+        branched->power = select3(leaves, photons->power, branched->power);
+        branched->direction = select3(leaves, split_chosen(&split, mostly_reflects == 0, direction), branched->direction);
+        front_branched = (leaves & mostly_reflects) ? entering == 0 : front_branched;
+        branched->stack = leaves ? (mostly_reflects ? (Uint)split.stack_refracted : (Uint)split.stack_reflected)
+                                 : branched->stack;
+        branched->path = leaves ? hash_pair(photons->path, depth | HAS_BRANCHED) : branched->path;
+        photons->history |= leaves ? HAS_BRANCHED : (Uint)0;
       }
-      add_power(split_off, parts, scale3((drawn ? (Float)1.0f : (Float)0.0f) - lesser, photons->power));
-      photons->power = select3(parts, scale3(1.0f - lesser, photons->power), photons->power);
+      add_power(split_off, splits, scale3((drawn ? (Float)1.0f : (Float)0.0f) - lesser, photons->power));
+      photons->power = select3(splits, scale3(1.0f - lesser, photons->power), photons->power);
       const Float rest = (drawn ? u : u - lesser) / (drawn ? lesser : 1.0f - lesser);
       // The low bits, which no choice has used, serve for the hash.
       const Uint rest_bits = AS_UINT(TO_INT(smaller(rest, 0.99999994f) * 16777216.0f)) << 8 | (photons->path & 0xffu);
-      branched->path = hash_pair(photons->path, photons->depth + 0x80000000u);
       photons->path = (e.here & first_two) ? rest_bits : photons->path;
       outcome = e.here ? OUTCOME_ALIVE : outcome;
 #endif
     } else {
       const int diffuse = e.material->surface == SURFACE_OPAQUE && is_diffuse(e.material);
-      const Uint caustic = photons->depth > 0 ? (Uint)OUTCOME_STORED : (Uint)OUTCOME_DIRECT;
+      const Uint caustic = depth > 0 ? (Uint)OUTCOME_STORED : (Uint)OUTCOME_DIRECT;
       outcome = e.here ? (diffuse ? caustic : (Uint)OUTCOME_ABSORBED) : outcome;
     }
   }
@@ -120,14 +126,14 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   outcome = (outcome == OUTCOME_ALIVE) & spent ? OUTCOME_CUT : outcome;
   // [/photon]
 
-  photons->depth += alive ? (Uint)1 : (Uint)0;
+  photons->history += alive ? (Uint)1 : (Uint)0;
   photons->origin = surface->position;
   photons->t_min = surface->error;
   photons->from = leaving(surface, front);
   // Those that end keep the direction that they came from.
   photons->direction = next;
   photons->alive = alive & (outcome == OUTCOME_ALIVE);
-  branched->depth = photons->depth;
+  branched->history = photons->history;
   branched->origin = photons->origin;
   branched->t_min = photons->t_min;
   branched->from = leaving(surface, front_branched);

@@ -91,7 +91,7 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
     photons.stack = aim->distance > 0.0f ? 0u : scene.materials[scene.triangles[0].material].medium;
     photons.from = NO_INDEX;
     photons.path = hash_pair(number, (Uint)(aim->seed + 77u));
-    photons.depth = 0;
+    photons.history = 0;
     photons.alive = (Mask)-1;
     Photons branched;
     Tally absorbed, split_off;
@@ -109,8 +109,8 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
       const Mask missed = (surface.t < INFINITY) == 0;
       const Mask in_order = (surface.entering != 0) != (inside != 0);
       const Mask wrong = photons.alive & (missed ? inside
-                                                   : ((in_order == 0) & (photons.depth > 0)) |
-                                                         (photons.depth >= aim->crossings));
+                                                   : ((in_order == 0) & (surfaces_met(&photons) > 0)) |
+                                                         (surfaces_met(&photons) >= aim->crossings));
       note_wrong(result, &start, wrong);
       result->events += lanes_set(photons.alive);
       photons.alive &= wrong == 0;

@@ -57,19 +57,18 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   photons.stack = light->media;
   photons.from = light->shape;
   photons.path = sequence_bits(&sequences[2], first);
-  photons.depth = 0;
+  photons.history = 0;
   photons.alive = (Mask)-1;
   return photons;
 }
 
 // Photons that wait for a packet of their own: field f of the k-th at [f][k]. A packet is emitted only while fewer than
-// WIDTH wait in either queue, and one that is taken puts no more back than it had. Those that branch off come on top: at
-// most WIDTH at a time, while no more than WAITING_ENOUGH wait.
+// WIDTH wait in either queue. One that is taken puts no more back than it had, and as many that branch off, which do not
+// branch again: so less than 4 WIDTH wait in both.
 #define WAITING_FIELDS 14
-#define WAITING_ENOUGH (3 * WIDTH)
 
 typedef struct {
-  float fields[WAITING_FIELDS][WAITING_ENOUGH + 2 * WIDTH];
+  float fields[WAITING_FIELDS][6 * WIDTH];
   uint count;
 } Waiting;
 
@@ -86,10 +85,10 @@ FUNCTION void wait_in(Waiting* waiting, const Photons* photons, const Mask which
     waiting->fields[7][k] = LANE(photons->power.y, float, lane);
     waiting->fields[8][k] = LANE(photons->power.z, float, lane);
     waiting->fields[9][k] = LANE(photons->t_min, float, lane);
-    waiting->fields[10][k] = LANE(photons->stack, float, lane);
-    waiting->fields[11][k] = LANE(photons->from, float, lane);
-    waiting->fields[12][k] = LANE(photons->path, float, lane);
-    waiting->fields[13][k] = LANE(photons->depth, float, lane);
+    waiting->fields[10][k] = as_float(LANE(photons->stack, uint, lane));
+    waiting->fields[11][k] = as_float(LANE(photons->from, uint, lane));
+    waiting->fields[12][k] = as_float(LANE(photons->path, uint, lane));
+    waiting->fields[13][k] = as_float(LANE(photons->history, uint, lane));
   }
 }
 
@@ -108,7 +107,7 @@ FUNCTION Photons take_waiting(Waiting* waiting) {
   photons.stack = AS_UINT(LOAD(waiting->fields[10], k));
   photons.from = AS_UINT(LOAD(waiting->fields[11], k));
   photons.path = AS_UINT(LOAD(waiting->fields[12], k));
-  photons.depth = AS_UINT(LOAD(waiting->fields[13], k));
+  photons.history = AS_UINT(LOAD(waiting->fields[13], k));
   photons.alive = lanes_below(0, taken);
   return photons;
 }
@@ -155,7 +154,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     power[k].sum = power[k].rest = make_vec3(0.0f, 0.0f, 0.0f);
     ended[k] = 0;
   }
-  Uint surfaces = 0;
+  uint surfaces = 0;
   uint stored = 0;
   uint n_branched = 0;
   uint rejected = 0;
@@ -189,10 +188,9 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
       const SurfacePacket surface = trace(scene, packet, photons.from, photons.alive, 0, &photons.stack);
       const Vec3 arrived = photons.direction;
       Photons branched;
-      const int has_room = waiting[0].count <= WAITING_ENOUGH && waiting[1].count <= WAITING_ENOUGH &&
-                           n_branched + WIDTH <= most_branched(run_length);
-      const Uint outcome = interact(scene, &surface, max_depth, has_room ? (Mask)-1 : (Mask)0, &photons, &branched,
-                                    &power[OUTCOME_ABSORBED], &power[TALLY_SPLIT]);
+      surfaces += lanes_set(photons.alive);
+      const Uint outcome = interact(scene, &surface, max_depth, 1, &photons, &branched, &power[OUTCOME_ABSORBED],
+                                    &power[TALLY_SPLIT]);
       if (ANY(branched.alive)) {
         n_branched += lanes_set(branched.alive);
         wait_in(&waiting[0], &branched, branched.alive & (branched.stack == 0));
@@ -208,7 +206,6 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
         }
         add_power(&power[k], here, photons.power);
         ended[k] += here ? (Uint)1 : (Uint)0;
-        surfaces += here ? photons.depth : (Uint)0;
         if (k == OUTCOME_STORED) {
           store_photons(&photons, arrived, here, grid, run_length, stored, fields);
           stored += lanes_set(here);
@@ -242,9 +239,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   }
   report->photons[OUTCOME_ALIVE] = last - first;
   report->photons[TALLY_SPLIT] = n_branched;
-  uint surfaces_met = 0;
-  for (uint lane = 0; lane < WIDTH; ++lane) surfaces_met += LANE(surfaces, uint, lane);
-  report->surfaces = surfaces_met;
+  report->surfaces = surfaces;
   report->rejected = rejected;
   report->low[0] = least_of_lanes(low.x);
   report->low[1] = least_of_lanes(low.y);
