@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   vitrum::add_info_command(app);
   vitrum::add_devices_command(app);
   vitrum::add_verify_command(app, exit_code);
+  vitrum::add_bench_command(app);
   app.footer("First steps:\n  vitrum render models/default_scene/scene.toml -o picture.png\n  vitrum render --help");
   try {
     app.parse(argc, argv);

@@ -20,5 +20,7 @@ void add_info_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 /// `vitrum verify`; sets `exit_code` to exit_unverified if a check fails.
 void add_verify_command(CLI::App& app, int& exit_code);
+/// `vitrum bench WHAT`
+void add_bench_command(CLI::App& app);
 
 }  // namespace vitrum

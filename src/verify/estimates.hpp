@@ -7,21 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "core/fit.hpp"
 #include "film/statistics.hpp"
 #include "verify/check.hpp"
 
 namespace vitrum {
-
-/// The b of y = a x^b that fits best, by least squares of the logarithms. At least two points, all positive.
-inline double fitted_exponent(const std::vector<std::pair<double, double>>& points) {
-  double x = 0, y = 0, xx = 0, xy = 0;
-  for (const auto& point : points) {
-    const double u = std::log(point.first), v = std::log(point.second);
-    x += u, y += v, xx += u * u, xy += u * v;
-  }
-  const double n = static_cast<double>(points.size());
-  return (n * xy - x * y) / (n * xx - x * x);
-}
 
 /// Several estimates, each by the same number of replicates and with its truth, that are tested together.
 class Estimates {
