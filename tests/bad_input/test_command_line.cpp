@@ -322,11 +322,11 @@ TEST_CASE("the report is complete") {
   CHECK(report["rays"]["photon"] > 1000);
   CHECK(report["photons"]["shot"] == 1000);
   CHECK(report["photons"]["stored"] > 500);
-  CHECK(report["photons"]["stored"] <= 1000);
+  CHECK(report["photons"]["stored"] <= 2000);  // one may branch off each
   const nlohmann::json& power = report["photon_power_watts"];
   for (int c = 0; c < 3; ++c) {
     const auto watts = [&](const char* what) { return power[what][c].get<double>(); };
-    CHECK(watts("shot") == doctest::Approx(watts("stored") + watts("absorbed") + watts("direct") + watts("lost") +
+    CHECK(watts("shot") + watts("split") == doctest::Approx(watts("stored") + watts("absorbed") + watts("direct") + watts("lost") +
                                            watts("cut")).epsilon(1e-5));
     CHECK(watts("absorbed") > 0.0);
   }
