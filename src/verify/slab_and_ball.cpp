@@ -1,11 +1,12 @@
 // Pictures of glass whose radiance has a closed form, pixel by pixel: a slab, a ball, a ball in a ball, and the inside
-// of a ball, clear and absorbing.
+// of a ball, clear and absorbing; and the group, with the meshes of mesh_pictures.hpp.
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "verify/groups.hpp"
+#include "verify/mesh_pictures.hpp"
 #include "verify/truth_pictures.hpp"
 
 namespace vitrum {
@@ -122,7 +123,8 @@ std::vector<CheckResult> check_slab(const CheckContext& context, int size) {
 
 std::vector<CheckResult> check_slab_and_ball(const CheckContext& context) {
   const int size = context.full ? 256 : 48;
-  const auto checks = {check_furnace, check_ball, check_nested, check_inside, check_slab};
+  const auto checks = {check_furnace,      check_ball,      check_nested,          check_inside,         check_slab,
+                       check_mesh_furnace, check_mesh_ball, check_touching_layers, check_mesh_shells};
   std::vector<CheckResult> rows;
   double done = 0.0;
   for (const auto check : checks) {
