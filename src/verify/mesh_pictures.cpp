@@ -74,8 +74,7 @@ class FacetRows {
       const double error = std::max({found - truth, truth - found - extrapolated(&Means::cut), 0.0});
       if (!(error <= mean_.error)) {
         mean_where_ = what + printed(", channel %d: found %.9g, truth %.9g", c, found, truth);
-        const double scale = false_colour_scale(fine.errors);
-        pictures_ = fine.rendered->pictures(what + printed(", %d rings", fine_rings_), fine.errors, scale);
+        pictures_ = fine.rendered->pictures(what + printed(", %d rings", fine_rings_), fine.errors, fine.scale);
       }
       mean_.add(std::isfinite(found) ? error : NAN, mean_.cases);
     }
@@ -103,15 +102,17 @@ class FacetRows {
     double deviation = 0.0;
     std::optional<Rendered> rendered;
     std::vector<float> errors;  ///< of all pixels, in the worst channel
+    double scale = 1.0;         ///< of the errors' colours: the rim's are beyond it
   };
 
   Means means(const Scene& scene, const std::vector<Shell>& shells) const {
     Means sums;
     sums.rendered.emplace(context_, scene);
     double pixels = 0.0;
+    std::vector<float> counting;
     for (size_t i = 0; i < sums.rendered->cut.size(); ++i) {
       const double p = glm::length(glm::cross(eye, direction_of(scene, i))), cut = sums.rendered->cut[i];
-      float& worst = sums.errors.emplace_back(0.0f);
+      float worst = 0.0f;
       const bool counts = p <= 0.9;
       pixels += counts;
       const Spectrum exact = shells_radiance(shells, p);
@@ -125,7 +126,10 @@ class FacetRows {
         sums.truth[c] += truth;
         sums.deviation += error / 3;
       }
+      sums.errors.push_back(worst);
+      if (counts) counting.push_back(worst);
     }
+    sums.scale = false_colour_scale(counting);
     for (Spectrum Means::*sum : {&Means::found, &Means::cut, &Means::truth}) sums.*sum /= pixels;
     sums.deviation /= pixels;
     return sums;
