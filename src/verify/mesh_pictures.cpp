@@ -56,7 +56,7 @@ class FacetRows {
     Means coarse, fine;
     for (int rings = 16; rings <= fine_rings_; rings *= 2) {
       Scene scene = surround(size_);
-      scene.render.min_weight = 1e-6;
+      scene.render.min_weight = 1e-5;
       add_bodies(scene, rings);
       coarse = fine;
       fine = means(scene, shells);
