@@ -39,7 +39,7 @@ TEST_CASE("verify passes, and its report holds what the table has") {
   CHECK(contains(run.out, " 0 failed"));
   const auto report = nlohmann::json::parse(file_bytes(json));
   CHECK(report["mode"] == "quick");
-  CHECK(report["checks"].size() == 22);
+  CHECK(report["checks"].size() == 28);
   for (const auto& check : report["checks"]) CHECK(check["passed"] == true);
   for (const auto& check : report["checks"]) CHECK_FALSE(check["kernel"].get<std::string>().empty());
   CHECK(contains(file_bytes(html), "<svg"));
