@@ -53,6 +53,13 @@ TEST_CASE("verify catches a wrong formula and names the check") {
                {"interface/reflectance"});
   check_caught({"fresnel.cl", "-x)) - lost;", "-x));"}, {"absorption"}, {"absorption/transmittance"});
   check_caught({"media.h", "top_medium(stack)].sigma_a;", "0].sigma_a;"}, {"slab-and-ball"}, {"slab-and-ball/absorbing ball"});
+  // Surfaces in contact are met one by one, and facets show their own normals.
+  check_caught({"trace_mesh.h", "SET_LANE(surface->contacts, uint, lane, contacts);",
+                "SET_LANE(surface->contacts, uint, lane, 0);"},
+               {"slab-and-ball"},
+               {"slab-and-ball/touching layers", "slab-and-ball/mesh shells", "slab-and-ball/mesh shells: facets"});
+  check_caught({"trace_mesh.h", "if (lane_dot3(n, geometric) > 1e-6f) shading = lane_normalize3(n);", ""},
+               {"slab-and-ball"}, {"slab-and-ball/mesh ball", "slab-and-ball/mesh shells: facets"});
 }
 
 TEST_CASE("every row that is a matter of chance sees 1 %") {
