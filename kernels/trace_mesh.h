@@ -68,32 +68,22 @@ FUNCTION void find_contacts(const Scene scene, const Ray* ray, const Hit first, 
   const float3 position = LANE3(surface->position, lane);
   const float error = contact_error(LANE(surface->error, float, lane), ray->origin);
   const float cosine = fabs(lane_dot3(ray->direction, LANE3(surface->geometric_normal, lane)));
-  Hit near[TREE_MAX_HITS];
-  const uint n = tree_hits_within(ray, scene.nodes, scene.leaves, first.t, first.t + error / cosine, near);
+  Hit near[TREE_MAX_BORDERS];
+  const uint n =
+      tree_borders_within(ray, scene.nodes, scene.leaves, first.t, first.t + error / cosine, position, error, near);
+  const uint first_entering = LANE(surface->entering, int, lane) != 0;
   uint contacts = 0;
   uint places = 0;
-  uint seen_shape[MAX_CONTACTS + 1];
-  uint seen_entering[MAX_CONTACTS + 1];
-  uint seen = 1;
-  seen_shape[0] = first.shape;
-  seen_entering[0] = LANE(surface->entering, int, lane) != 0;
   for (uint k = 0; k < n; ++k) {
     __global const TriangleData* triangle = &scene.triangles[near[k].primitive];
-    const int touches = tree_near_plane(position, corner_of(scene, triangle, 0), corner_of(scene, triangle, 1),
-                                        corner_of(scene, triangle, 2), error);
-    if (!touches) continue;
     if (scene.materials[triangle->material].surface != SURFACE_DIELECTRIC) {
       set_mesh_surface(scene, near[k], lane, surface);
       return;
     }
-    // Triangles that share an edge are one border.
     const uint entering = near[k].front;
-    int known = 0;
-    for (uint s = 0; s < seen; ++s) known |= seen_shape[s] == near[k].shape && seen_entering[s] == entering;
-    if (known || places == MAX_CONTACTS) continue;
-    seen_shape[seen] = near[k].shape;
-    seen_entering[seen++] = entering;
-    contacts |= packed_contact(scene.materials[triangle->material].medium, entering, places++);
+    if (near[k].shape == first.shape && entering == first_entering) continue;
+    if (places < MAX_CONTACTS)
+      contacts |= packed_contact(scene.materials[triangle->material].medium, entering, places++);
   }
   SET_LANE(surface->contacts, uint, lane, contacts);
 }

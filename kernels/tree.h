@@ -285,12 +285,15 @@ static bool tree_any(const Ray* ray, __global const TreeNode* nodes, __global co
   return false;
 }
 
-#define TREE_MAX_HITS 4
+#define TREE_MAX_BORDERS 4
 
-// The first TREE_MAX_HITS triangles at t_first <= t <= t_last, t_first >= 0, in order; returns how many there are in
-// `hits`. For surfaces in contact; the ray's own t_min and t_max and what it leaves do not matter.
-static uint tree_hits_within(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
-                             const float t_first, const float t_last, Hit hits[TREE_MAX_HITS]) {
+// The first TREE_MAX_BORDERS borders at t_first <= t <= t_last, t_first >= 0, of triangles whose planes are within
+// `error` [m] of `place`, in order; returns how many there are in `hits`. The triangles of a shape that are met from one
+// side are one border, since at an edge or a corner a ray meets several: the first of them counts. For surfaces in
+// contact; the ray's own t_min and t_max and what it leaves do not matter.
+static uint tree_borders_within(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
+                                const float t_first, const float t_last, const float3 place, const float error,
+                                Hit hits[TREE_MAX_BORDERS]) {
   const TreeRay r = tree_ray(ray);
   uint count = 0;
   float t_end = t_last;
@@ -303,14 +306,20 @@ static uint tree_hits_within(const Ray* ray, __global const TreeNode* nodes, __g
     int4 front;
     const int4 met = tree_triangles(&r, leaf, &t, &u, &v, &front);
     for (uint mask = tree_mask4(met & (t >= t_first) & (t <= t_end)); mask; mask &= mask - 1) {
-      const Hit candidate = tree_hit(leaf, tree_lowest(mask), t, u, v, tree_mask4(front));
-      uint place = count;
-      for (; place > 0 && tree_before(&candidate, &hits[place - 1]); --place)
-        if (place < TREE_MAX_HITS) hits[place] = hits[place - 1];
-      if (place < TREE_MAX_HITS) hits[place] = candidate;
-      count += count < TREE_MAX_HITS;
+      const uint lane = tree_lowest(mask);
+      const float3 a = tree_corner(leaf, 0, lane), b = tree_corner(leaf, 1, lane), c = tree_corner(leaf, 2, lane);
+      if (!tree_near_plane(place, a, b, c, error)) continue;
+      const Hit candidate = tree_hit(leaf, lane, t, u, v, tree_mask4(front));
+      // It may replace a later one of its border, or else the last of all.
+      uint slot = 0;
+      while (slot < count && (hits[slot].shape != candidate.shape || hits[slot].front != candidate.front)) ++slot;
+      if (slot == TREE_MAX_BORDERS) --slot;
+      if (slot < count && !tree_before(&candidate, &hits[slot])) continue;
+      count += slot == count;
+      for (; slot > 0 && tree_before(&candidate, &hits[slot - 1]); --slot) hits[slot] = hits[slot - 1];
+      hits[slot] = candidate;
     }
-    if (count == TREE_MAX_HITS) t_end = hits[TREE_MAX_HITS - 1].t;
+    if (count == TREE_MAX_BORDERS) t_end = hits[TREE_MAX_BORDERS - 1].t;
   }
   return count;
 }
