@@ -42,8 +42,8 @@ inline glm::dvec3 direction_of(const Scene& scene, size_t i) {
 }
 
 /// Looks down at what will lie in air between light from above and from below, channel by channel: from above alone,
-/// from below alone, from both sides. It has one material, the ground's. The middle column of pixels, size made odd, lies
-/// over the diagonals of the layers' faces, where a ray meets two triangles of each.
+/// from below alone, from both sides. It has one material, the ground's. The middle column of pixels (`size` is made
+/// odd) lies over the diagonals of the layers' faces, where a ray meets two triangles of each.
 inline Scene lit_from_both_sides(int size) {
   Scene scene = truth_picture({0, 2, 0}, {1, 0, 1}, 60, size | 1);
   scene.background = {1, 0, 1};
