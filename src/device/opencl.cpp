@@ -39,6 +39,9 @@ DeviceInfo describe(const cl::Device& device) {
   info.driver = device.getInfo<CL_DRIVER_VERSION>();
   info.is_cpu = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
   info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  const auto partitions = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
+  info.can_be_split = info.compute_units > 1 && std::find(partitions.begin(), partitions.end(),
+                                                          CL_DEVICE_PARTITION_BY_COUNTS) != partitions.end();
   info.memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   info.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   auto lacks = [&info](const std::string& what) {
@@ -58,6 +61,15 @@ std::string lower(std::string text) {
 
 [[noreturn]] void fail(const cl::Error& error, const std::string& doing, const std::string& mend) {
   throw Error({}, "OpenCL: " + doing + " failed with " + opencl_error_name(error.err()), mend);
+}
+
+cl::Device part_of(cl::Device device, unsigned compute_units) {
+  const cl_device_partition_property counts[] = {CL_DEVICE_PARTITION_BY_COUNTS,
+                                                 static_cast<cl_device_partition_property>(compute_units),
+                                                 CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+  std::vector<cl::Device> parts;
+  device.createSubDevices(counts, &parts);
+  return parts.at(0);
 }
 
 }  // namespace
@@ -99,6 +111,8 @@ std::string opencl_error_name(int code) {
     case CL_INVALID_ARG_INDEX: name = "CL_INVALID_ARG_INDEX"; break;
     case CL_INVALID_ARG_SIZE: name = "CL_INVALID_ARG_SIZE"; break;
     case CL_INVALID_KERNEL_ARGS: name = "CL_INVALID_KERNEL_ARGS"; break;
+    case CL_DEVICE_PARTITION_FAILED: name = "CL_DEVICE_PARTITION_FAILED"; break;
+    case CL_INVALID_DEVICE_PARTITION_COUNT: name = "CL_INVALID_DEVICE_PARTITION_COUNT"; break;
     case CL_INVALID_WORK_GROUP_SIZE: name = "CL_INVALID_WORK_GROUP_SIZE"; break;
     case CL_MISALIGNED_SUB_BUFFER_OFFSET: name = "CL_MISALIGNED_SUB_BUFFER_OFFSET"; break;
     default: break;
@@ -106,7 +120,7 @@ std::string opencl_error_name(int code) {
   return std::string(name) + " (" + std::to_string(code) + ")";
 }
 
-Device::Device(const std::string& choice, unsigned group_size, unsigned width)
+Device::Device(const std::string& choice, unsigned group_size, unsigned width, unsigned compute_units)
     : group_size_(group_size), width_(width) {
   const std::vector<cl::Device> devices = all_devices();
   if (devices.empty())
@@ -134,6 +148,10 @@ Device::Device(const std::string& choice, unsigned group_size, unsigned width)
     throw Error({}, "the device '" + info_.name + "' cannot be used: " + info_.shortfall,
                 "choose another that `vitrum devices` lists");
   try {
+    if (compute_units > 0) {
+      device_ = part_of(device_, compute_units);
+      info_ = describe(device_);
+    }
     context_ = cl::Context(device_);
     queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
     // On GPUs the work-items are the lanes.

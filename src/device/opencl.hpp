@@ -26,6 +26,7 @@ struct DeviceInfo {
   std::string name, platform, version, driver;
   bool is_cpu = false;
   unsigned compute_units = 0;
+  bool can_be_split = false;    ///< into parts of some compute units each
   uint64_t memory = 0;          ///< [bytes]
   uint64_t max_allocation = 0;  ///< [bytes]
   bool usable = true;           ///< has OpenCL C 1.2, a compiler and what vitrum's kernels need
@@ -61,8 +62,10 @@ class Device {
  public:
   /// `choice`: "" takes the first CPU, else the first device; a number as `vitrum devices` counts them, or a piece of
   /// a device's or platform's name. `group_size`: work-items per group; pictures do not depend on it. `width`: rays per
-  /// work-item, 1, 4, 8 or 16; 0 takes what suits the device.
-  explicit Device(const std::string& choice = "", unsigned group_size = 32, unsigned width = 0);
+  /// work-item, 1, 4, 8 or 16; 0 takes what suits the device. `compute_units`: takes a part of so many, which on a CPU are
+  /// threads; 0 takes all. Throws Error if the device cannot be split so.
+  explicit Device(const std::string& choice = "", unsigned group_size = 32, unsigned width = 0,
+                  unsigned compute_units = 0);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 

@@ -9,8 +9,7 @@
 namespace vitrum {
 namespace {
 
-constexpr uint32_t pixels_per_launch = 1u << 16;  // a multiple of every WIDTH
-constexpr double seconds_per_launch = 0.1;        // so that progress can be told
+constexpr double seconds_per_launch = 0.1;
 
 }  // namespace
 
@@ -18,14 +17,15 @@ struct CameraPass::State {
   KernelContext context;
   bool first_hits;
   uint32_t pixels, film_stride;
-  uint32_t samples_per_launch = 1;
+  uint32_t samples_per_launch;
   Buffer<float> film;
   Buffer<uint32_t> counts;
   Buffer<kernel::CameraSample> samples;
   cl::Kernel kernel;
   uint64_t camera_rays = 0;
 
-  State(const KernelContext& c, bool with_first_hits) : context(c), first_hits(with_first_hits) {
+  State(const KernelContext& c, bool with_first_hits)
+      : context(c), first_hits(with_first_hits), samples_per_launch(std::max(c.launches.samples, 1u)) {
     Device& device = context.device;
     pixels = static_cast<uint32_t>(context.scene.film.width) * static_cast<uint32_t>(context.scene.film.height);
     film_stride = padded(pixels);
@@ -77,21 +77,25 @@ void CameraPass::run(uint32_t replicate, uint32_t first, uint32_t count, uint32_
   const std::vector<kernel::CameraSample> points = s.sample_points(replicate, first, count);
   if (s.samples.size() < points.size()) s.samples = s.context.device.allocate<kernel::CameraSample>(points.size(), "film");
   s.context.device.write(s.samples, points);
+  const Launches& launches = s.context.launches;
   for (uint32_t done = 0; done < count;) {
     const uint32_t last = std::min(count, done + s.samples_per_launch);
     double longest = 0.0;
-    for (uint32_t pixel = 0; pixel < s.pixels; pixel += pixels_per_launch) {
+    const uint32_t tiles = (s.pixels + launches.pixels - 1) / launches.pixels;
+    for (uint32_t tile = 0; tile < tiles; ++tile) {
       const auto start = std::chrono::steady_clock::now();
-      const uint32_t last_pixel = std::min(s.pixels, pixel + pixels_per_launch);
+      const uint32_t pixel = (launches.last_pixels_first ? tiles - 1 - tile : tile) * launches.pixels;
+      const uint32_t last_pixel = std::min(s.pixels, pixel + launches.pixels);
       s.launch(done, last, total > 1, pixel, last_pixel, map);
       s.context.device.finish();
-      progress((done + static_cast<double>(last_pixel) / s.pixels * (last - done)) / count);
+      progress((done + (tile + 1.0) / tiles * (last - done)) / count);
       longest = std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
+    done = last;
+    if (launches.samples > 0) continue;
     // What a launch holds changes nothing but its time.
     if (2.0 * longest < seconds_per_launch) s.samples_per_launch = std::min(2 * s.samples_per_launch, 64u);
     if (longest > 2.0 * seconds_per_launch) s.samples_per_launch = std::max(s.samples_per_launch / 2, 1u);
-    done = last;
   }
 }
 

@@ -9,6 +9,15 @@
 
 namespace vitrum {
 
+/// How passes are cut into launches. Pictures do not depend on it but where photons are sampled independently, which draw
+/// anew in each launch.
+struct Launches {
+  uint32_t photons = 1u << 16;  ///< a multiple of 1024; what so many leave fits a CPU's caches, until it is sorted
+  uint32_t pixels = 1u << 16;   ///< a multiple of every WIDTH
+  uint32_t samples = 0;         ///< of each pixel; 0: as many as take a tenth of a second, so that progress can be told
+  bool last_pixels_first = false;
+};
+
 struct KernelContext {
   Device& device;
   const Kernels& kernels;
@@ -16,6 +25,7 @@ struct KernelContext {
   const SceneData& data;
   const DeviceScene& device_scene;
   const Features& features;
+  Launches launches{};
 
   /// Work-items for `count` entries of a kernel that takes WIDTH of them at a time.
   size_t packets(size_t count) const { return (count + device.width() - 1) / device.width(); }

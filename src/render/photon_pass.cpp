@@ -15,9 +15,6 @@
 namespace vitrum {
 namespace {
 
-// What the photons of a launch leave fits a CPU's caches, until it is sorted. No fewer than the largest pilot.
-constexpr uint32_t photons_per_launch = 1u << 16;
-
 Spectrum to_spectrum(const float* values) { return {values[0], values[1], values[2]}; }
 
 /// Power that a light sends out in all [W]; infinite for a directional light.
@@ -75,6 +72,7 @@ struct PhotonPass::State {
   Buffer<kernel::SequenceData> sequences;
   cl::Kernel kernel;
   PhotonRuns runs;
+  uint32_t most_runs;           // of a launch
   PhotonBalance balance;
   PhotonGrid grid;
   PhotonMap tree;               // instead of the grid where the k nearest are gathered
@@ -100,7 +98,7 @@ struct PhotonPass::State {
     kernel = context.kernels.get("photons");
     // A GPU wants many work-items.
     runs.length = device.info().is_cpu ? 1024 : 64;
-    const uint32_t most_runs = photons_per_launch / runs.length;
+    most_runs = (std::max(context.launches.photons, pilot_size(largest)) + runs.length - 1) / runs.length;
     runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0), "photons in flight");
     runs.on_device = device.allocate<kernel::PhotonRunData>(most_runs, "photons in flight");
   }
@@ -121,7 +119,7 @@ struct PhotonPass::State {
                                              number, first, light.kind > LIGHT_DIRECTIONAL);
     device.write(sequences, std::vector<kernel::SequenceData>(dimensions.begin(), dimensions.end()));
     const uint32_t n_runs = (count + runs.length - 1) / runs.length;
-    const size_t n_counts = size_t{photons_per_launch / runs.length} * buckets;
+    const size_t n_counts = size_t{most_runs} * buckets;
     if (runs.counts.size() < n_counts) runs.counts = device.allocate<uint32_t>(n_counts, "photons in flight");
     const unsigned next = context.device_scene.set_arguments(kernel);
     set_arguments(kernel, next, light.kind == LIGHT_DIRECTIONAL ? casters_of_directional : context.device_scene.casters,
@@ -227,7 +225,7 @@ void PhotonPass::run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_
     const uint64_t n = std::max<uint64_t>(1, s.share(s.pairs[p], count));
     const uint64_t n_before = before == 0 ? 0 : s.share(s.pairs[p], before);
     for (uint64_t first = 0; first < n;) {
-      const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(photons_per_launch, n - first));
+      const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(s.context.launches.photons, n - first));
       s.shoot(p, replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n), s.grid.grid(),
               nearest ? 1 : s.grid.buckets());
       for (const kernel::PhotonRunData& run : s.runs.reports) s.book(run);

@@ -114,7 +114,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   const auto upload_start = std::chrono::steady_clock::now();
   DeviceScene device_scene = upload(device, data, features, features.mesh ? &tree : nullptr);
   result.seconds["upload"] = seconds_since(upload_start);
-  const KernelContext context{device, kernels, scene, data, device_scene, features};
+  const KernelContext context{device, kernels, scene, data, device_scene, features, options.launches};
 
   const uint32_t samples = static_cast<uint32_t>(scene.render.samples);
   const uint64_t photons = features.caustics ? scene.photons.count : 0;

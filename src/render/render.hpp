@@ -36,6 +36,7 @@ View view_of_name(const std::string& name);
 struct RenderOptions {
   std::vector<View> views = {View::beauty};
   KernelFiles kernels;
+  Launches launches;
   /// Ready when the scene's textures have their texels (scene/textures.hpp), or has failed; none: they have them.
   std::shared_future<void> textures_ready;
 };

@@ -74,7 +74,8 @@ TEST_CASE("photons whose power or place is no number are counted and told of, an
     CHECK(broken.report["rejected_values"] == 0);
     CHECK(contains(broken.err, "0 values of the picture and " + std::to_string(rejected) + " photons were not finite"));
     const auto& photons = broken.report["photons"];
-    CHECK(photons["shot"] == photons["stored"].get<int>() + photons["absorbed"].get<int>() + photons["direct"].get<int>() +
-                                 photons["lost"].get<int>() + photons["cut"].get<int>() + rejected);
+    CHECK(photons["shot"].get<int>() + photons["branched"].get<int>() ==
+          photons["stored"].get<int>() + photons["absorbed"].get<int>() + photons["direct"].get<int>() +
+              photons["lost"].get<int>() + photons["cut"].get<int>() + rejected);
   }
 }
