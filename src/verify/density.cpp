@@ -164,7 +164,7 @@ void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<C
   const size_t first = rows.size();
   noise.rows("density/noise with count", "variance over 4/(3 k) E^2 and its terms of higher order",
              context.full ? 0.003 : 0.01, "of the variance", blunt, rows);
-  rows[first].plots.push_back({"", "photons within the radius", "noise, relative", {{"vitrum", curve}}, true, true});
+  rows[first].plots.push_back({"Noise of an estimate of irradiance, independent photons", "photons within the radius", "noise, relative", {{"vitrum", curve}}, true, true});
 }
 
 /// Many photons within wide radii: the bias is the kernel's second moment times the Laplacian.
@@ -192,7 +192,7 @@ void check_bias(const CheckContext& context, Estimates& unbiased, std::vector<Ch
   const size_t first = rows.size();
   bias.rows("density/bias with radius", "r^2 lap(E) / 12 + r^4 lap(lap(E)) / 384", context.full ? 0.02 : 0.2,
             "of the bias", blunt, rows);
-  rows[first].plots.push_back({"", "radius [m]", "bias, relative", {{"vitrum", curve}}, true, true});
+  rows[first].plots.push_back({"Bias of an estimate of irradiance by its radius", "radius [m]", "bias, relative", {{"vitrum", curve}}, true, true});
 }
 
 /// Bias of the mean over passes whose radius shrinks.
@@ -252,7 +252,36 @@ void check_slope(const CheckContext& context, std::vector<CheckResult>& rows) {
   const double slope = fitted_exponent(errors);
   rows.push_back({"density/progressive: slope", errors.size(), std::abs(slope + 2.0 / 3.0), 0.05, "of the exponent",
                   "mean squared error ~ passes^(-2/3), Knaus and Zwicker 2011", printed("slope %.4f", slope),
-                  {{"", "passes", "mean squared error, relative", {{"vitrum", errors}}, true, true}}});
+                  {{"Error over passes with a radius that shrinks", "passes", "mean squared error, relative", {{"vitrum", errors}}, true, true}}});
+}
+
+/// The k nearest of n photons: in an even density, n times the share of the light within their circle is the k-th of n even
+/// numbers, so that the estimate has the mean k / (k - 1) and a mean square of k^2 (n - 1) / (n (k - 1) (k - 2)).
+void check_nearest(const CheckContext& context, std::vector<CheckResult>& rows) {
+  constexpr int k = 50;
+  const uint64_t count = 100'000;
+  const double n = static_cast<double>(count);
+  Scene scene = lamp_over_plane(1.0);
+  scene.photons.estimate = PhotonEstimate::nearest;
+  scene.photons.nearest = k;
+  Gathering gathering(context, scene, 1024, count);
+  // Along the curvature of the irradiance, the mean over a circle of radius r is larger by r^2 lap(E) / 8.
+  std::vector<double> expected;
+  for (const Irradiance& truth : gathering.truth)
+    expected.push_back(truth.value + k * cone_power / (8 * pi * n * truth.value) * truth.laplacian);
+  std::vector<double> means, squares;
+  for (uint32_t replicate = 0; replicate < replicates_of(context); ++replicate) {
+    const std::vector<double> values = gathering.irradiance(replicate);
+    means.push_back(gathering.mean([&](size_t i) { return values[i] / expected[i]; }) * (k - 1) / k);
+    squares.push_back(gathering.mean([&](size_t i) { return values[i] / expected[i] * (values[i] / expected[i]); }) *
+                      ((k - 1.0) * (k - 2.0) * n / (k * k * (n - 1))));
+  }
+  // What is left out of the irradiance's curvature is of its order squared, 1e-6.
+  Estimates mean, square;
+  mean.add(means, 1.0, rounding, printed("%d nearest of %llu photons", k, static_cast<unsigned long long>(count)));
+  square.add(squares, 1.0, rounding, printed("%d nearest of %llu photons", k, static_cast<unsigned long long>(count)));
+  mean.rows("density/k nearest", "k / (k - 1) of the irradiance", 1e-3, "relative", blunt, rows);
+  square.rows("density/k nearest: square", "k^2 / ((k - 1) (k - 2)) of its square", 3e-3, "relative", blunt, rows);
 }
 
 }  // namespace
@@ -264,6 +293,7 @@ std::vector<CheckResult> check_density(const CheckContext& context) {
   check_bias(context, unbiased, others);
   check_progressive(context, others);
   check_slope(context, others);
+  if (context.full) check_nearest(context, others);
   unbiased.rows("density/unbiased", "irradiance convolved with Epanechnikov's kernel", context.full ? 8e-4 : 2.5e-3,
                 "relative", blunt, rows);
   rows.insert(rows.end(), others.begin(), others.end());

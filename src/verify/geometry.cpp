@@ -7,6 +7,7 @@
 #include "device/device_scene.hpp"
 #include "scene/features.hpp"
 #include "verify/groups.hpp"
+#include "verify/path_lengths.hpp"
 #include "verify/scenes.hpp"
 
 namespace vitrum {
@@ -178,7 +179,8 @@ std::vector<CheckResult> check_geometry(const CheckContext& context) {
   return {missed.result("geometry/edges and corners", "misses", "closed mesh: each ray hits"),
           unique.result("geometry/closest hit", "sums of hits", "another tree over the same triangles"),
           straight.result("geometry/straight chains", "wrong media", "who enters a closed mesh leaves it"),
-          refracted.result("geometry/chains", "wrong media", "who enters a closed mesh leaves it")};
+          refracted.result("geometry/chains", "wrong media", "who enters a closed mesh leaves it"),
+          check_path_lengths(context)};
 }
 
 }  // namespace vitrum

@@ -92,7 +92,7 @@ class FacetRows {
     // Errors that fall as 1/n or 1/n^3, or not at all, are off by 1 and more; rays that bunch up, by .1.
     rows.push_back({name + ": facets", order_.cases, order_.error, 0.25, "of the order",
                     "mean |pixel - truth| ~ 1/n^2 for n rings", order_where_,
-                    {{"", "rings", "mean |pixel - truth|", lines_, true, true}}, {}});
+                    {{"Facets: pictures of balls as meshes, off the balls'", "rings of facets", "mean |pixel - truth|", lines_, true, true}}, {}});
     return rows;
   }
 
