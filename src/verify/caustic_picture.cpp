@@ -24,7 +24,7 @@ CheckResult check_caustic_picture(const CheckContext& context) {
   plate.scene.render.samples = 256;         // the caustic is finer than pixels
   const std::vector<uint64_t> counts = {1u << 12, 1u << 14, 1u << 16, 1u << 18, 1u << 20, 1u << 22};
   CheckResult row{"photons/caustic picture", 0, 0.0, 0, "steps that are worse", "the ball's irradiance by quadrature", ""};
-  PlotLine automatic{"automatic radius", {}}, nearest{"50 nearest (Jensen 1996)", {}};
+  PlotLine automatic{"vitrum, automatic radius", {}}, nearest{"50 nearest (Jensen 1996)", {}};
   for (PlotLine* line : {&automatic, &nearest}) {
     for (const uint64_t count : counts) {
       Scene scene = plate.scene;

@@ -168,7 +168,7 @@ class PhotonChecks {
     const reference::BallOnAxis truth{1.0, 1.5, 0.0, 2.0, infinity};
     constexpr double radius = 0.5;
     const double flux = reference::encircled_flux(truth, radius, reference::Orders::all);
-    PlotLine sequence{"vitrum", {}}, independent{"vitrum, independent photons", {}}, chance{"theory of independent photons", {}};
+    PlotLine sequence{"vitrum, low-discrepancy", {}}, independent{"vitrum, independent", {}}, chance{"independent, in theory", {}};
     for (const uint64_t count : {1u << 10, 1u << 12, 1u << 14, 1u << 16, 1u << 18, 1u << 20}) {
       for (PlotLine* line : {&sequence, &independent}) {
         Scene scene = ball_over_plane(1.5, Spectrum(0.0), infinity);
