@@ -14,16 +14,17 @@ using glm::dvec3;
 /// for a scene of size 1; all have index 1, so that light goes straight on and nothing is reflected.
 constexpr double thickness = 1e-3, radius = 1e-3;  // of each of two plates, of the ball
 const dvec3 ball_centre(0.3, 0.2, -0.1);
-// Of absorption along a plate's thickness or the ball's radius, by channel.
+// Of absorption along a plate's thickness or the ball's radius, by channel. Grazing rays have a longer way.
 const dvec3 depth(0.5, 1.0, 2.0);
+constexpr double grazing_share = 0.02;
 
 /// The plates lie under y = 0, the ball above them.
-Scene bodies(double size, const dvec3& eye, const dvec3& look_at, double vertical_fov, int pixels) {
+Scene bodies(double size, const dvec3& eye, const dvec3& look_at, double vertical_fov, int pixels, double share) {
   Scene scene = truth_picture(size * eye, size * look_at, vertical_fov, pixels);
   scene.camera.up = {0, 0, 1};
   for (int k = 0; k < 3; ++k) {
     scene.materials.push_back(glass(1.0));
-    scene.materials.back().absorption = depth / (size * thickness) * (k == 1 ? 0.5 : 1.0);
+    scene.materials.back().absorption = share * depth / (size * thickness) * (k == 1 ? 0.5 : 1.0);
   }
   add(scene, box(size * dvec3(-10, -thickness, -10), size * dvec3(10, 0, 10), 0));
   add(scene, box(size * dvec3(-10, -2 * thickness, -10), size * dvec3(10, -thickness, 10), 1));
@@ -44,17 +45,23 @@ CheckResult check_path_lengths(const CheckContext& context) {
     worst.add(error, worst.cases);
   };
   for (const double size : {1e-3, 1.0, 1e3}) {
-    const Scene plates = bodies(size, {0.2, 0.7, 0.1}, {-0.3, 0, 0.2}, 40, pixels);
-    const Rendered seen(context, plates);
-    for (size_t i = 0; i < seen.cut.size(); ++i) {
-      const double cosine = -direction_of(plates, i).y;
-      for (int c = 0; c < 3; ++c) {
-        // Half as much in the second plate.
-        const double thick = -std::log(seen.radiance[3 * i + static_cast<size_t>(c)]) / (1.5 * depth[c]) * thickness * cosine;
-        found_error(std::abs(thick - thickness), size, "plates", i);
+    // From above, and at cosines of .03 to .1, where borders in contact are far apart along the ray.
+    for (const bool grazing : {false, true}) {
+      const double share = grazing ? grazing_share : 1.0;
+      const Scene plates = grazing ? bodies(size, {0.5, 0.033, 0.1}, {0, 0, 0.2}, 4, pixels, share)
+                                   : bodies(size, {0.2, 0.7, 0.1}, {-0.3, 0, 0.2}, 40, pixels, share);
+      const Rendered seen(context, plates);
+      for (size_t i = 0; i < seen.cut.size(); ++i) {
+        const double cosine = -direction_of(plates, i).y;
+        for (int c = 0; c < 3; ++c) {
+          // Half as much in the second plate.
+          const double depth_found = -std::log(seen.radiance[3 * i + static_cast<size_t>(c)]);
+          const double thick = depth_found / (1.5 * share * depth[c]) * thickness * cosine;
+          found_error(std::abs(thick - thickness), size, grazing ? "plates, grazing" : "plates", i);
+        }
       }
     }
-    const Scene ball = bodies(size, ball_centre + dvec3(0.002, 0.003, 0.001), ball_centre, 40, pixels);
+    const Scene ball = bodies(size, ball_centre + dvec3(0.002, 0.003, 0.001), ball_centre, 40, pixels, 1.0);
     const Rendered through(context, ball);
     for (size_t i = 0; i < through.cut.size(); ++i) {
       const dvec3 direction = direction_of(ball, i), to_centre = ball_centre - ball.camera.eye / size;

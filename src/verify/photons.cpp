@@ -277,8 +277,9 @@ class PhotonChecks {
       before = after;
     }
     check_balance({}, before, what + ", all replicates");
-    // In balls of air there is nothing to branch off.
-    if (std::any_of(split.begin(), split.end(), [](double share) { return share != 0; })) branching_.add(split, 0.0, 0.0, what);
+    // In balls of air there is nothing to branch off; shots of few photons would make the row blunt.
+    const bool branches = std::any_of(split.begin(), split.end(), [](double share) { return share != 0; });
+    if (branches && count >= std::min(count_, mesh_count_)) branching_.add(split, 0.0, 0.0, what);
     context_.progress(static_cast<double>(++shots_) / all_shots);
     return landed;
   }
