@@ -273,8 +273,8 @@ void check_slope(const CheckContext& context, std::vector<CheckResult>& rows) {
 
 /// The k nearest of n photons. The share of the light within their circle is the k-th of n even numbers: distributed as
 /// Beta(k, n - k + 1). By the moments of its inverse the estimate k Phi / (n pi r_k^2) is k / (k - 1) of an even
-/// irradiance, and has the variance below. Where the irradiance E is curved, pi r^2 (E + r^2 lap(E) / 8) is in the circle
-/// to the next order: that adds k Phi lap(E) / (8 pi n E) to the mean and nothing to the variance.
+/// irradiance, and has the variance below. In the circle of a curved irradiance E are pi r^2 (E + r^2 lap(E) / 8), to
+/// the next order, which adds k Phi lap(E) / (8 pi n E) to the mean and nothing to the variance.
 void check_nearest(const CheckContext& context, std::vector<CheckResult>& rows) {
   const uint32_t replicates = replicates_of(context);
   constexpr double series = 5e-6;  // the next order of the curvature where 320 circles hold all photons
@@ -286,7 +286,7 @@ void check_nearest(const CheckContext& context, std::vector<CheckResult>& rows) 
     scene.photons.estimate = PhotonEstimate::nearest;
     scene.photons.nearest = nearest;
     scene.photons.max_radius = height;
-    Gathering gathering(context, scene, 1024, count);
+    Gathering gathering(context, scene, context.full ? 4096 : 1024, count);
     std::vector<double> expected;
     for (const Irradiance& truth : gathering.truth)
       expected.push_back(k / (k - 1) * truth.value + k * cone_power * truth.laplacian / (8 * pi * n * truth.value));
