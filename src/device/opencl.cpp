@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <mutex>
 
 #include "core/error.hpp"
 
@@ -69,7 +70,11 @@ cl::Device part_of(cl::Device device, unsigned compute_units) {
                                                  CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
   std::vector<cl::Device> parts;
   device.createSubDevices(counts, &parts);
-  return parts.at(0);
+  // PoCL 3.1's threads look at the device of a command that the host has waited for already: what is split off stays.
+  static std::mutex mutex;
+  static std::vector<cl::Device>& kept = *new std::vector<cl::Device>;
+  const std::lock_guard lock(mutex);
+  return kept.emplace_back(parts.at(0));
 }
 
 }  // namespace

@@ -57,13 +57,7 @@ std::vector<CheckResult> check_absorption(const CheckContext& context) {
 
   const uint32_t count = context.full ? 48'000'000 : 1'600'000;
   FresnelInputs inputs(200);
-  Fields in(count, 3);
-  for (uint32_t i = 0; i < count; ++i) {
-    const auto [sigma_a, distance] = inputs.absorbing_path();
-    in(0, i) = sigma_a;
-    in(1, i) = distance;
-    in(2, i) = inputs.reflectance();
-  }
+  const Fields in = medium_inputs(inputs, count);
   const Fields out = medium.run(in);
   const auto tally = tallied<MediumTally>(count, [&](MediumTally& sum, uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; ++i) {

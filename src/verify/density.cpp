@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "render/photon_tree.hpp"
 #include "verify/estimates.hpp"
 #include "verify/groups.hpp"
 #include "verify/photon_run.hpp"
@@ -70,7 +71,8 @@ class Gathering {
 
   Gathering(const CheckContext& context, const Scene& scene, uint32_t places, uint64_t count)
       : device_(context.device),
-        run_(scene, context.device, count, context.kernels),
+        shot_(with_fixed_radius(scene)),
+        run_(shot_, context.device, count, context.kernels),
         kernel_(device_.build("checks/gather.cl", kernel_source(context.kernels, {"checks/gather.cl"}),
                               "-cl-std=CL1.2" + scene_features(scene).build_options()),
                 "gather_at"),
@@ -91,9 +93,11 @@ class Gathering {
   /// Irradiance at each place by pass `pass` of `replicate` [W/m2].
   std::vector<double> irradiance(uint32_t replicate, uint64_t pass = 0) {
     run_.run(pass, replicate, pass * count_, count_);
+    const bool nearest = scene_.photons.estimate == PhotonEstimate::nearest;
+    if (nearest) fill_photon_tree(device_, tree_, read_photons(device_, run_.map()), scene_.photons.max_radius);
     const auto places = static_cast<uint32_t>(truth.size());
     set_arguments(kernel_, 0, places, queries_);
-    set_arguments(kernel_, set_map_arguments(kernel_, 2, run_.map(), scene_), irradiance_);
+    set_arguments(kernel_, set_map_arguments(kernel_, 2, nearest ? tree_ : run_.map(), scene_), irradiance_);
     device_.launch("checks", kernel_, places);
     const std::vector<float> values = device_.read(irradiance_, 0, irradiance_.size());
     std::vector<double> red;
@@ -110,8 +114,16 @@ class Gathering {
   }
 
  private:
+  /// The k nearest are looked for among the same photons, so that the kernels that shoot them are compiled once.
+  static Scene with_fixed_radius(Scene scene) {
+    scene.photons.estimate = PhotonEstimate::fixed_radius;
+    return scene;
+  }
+
   Device& device_;
+  Scene shot_;
   PhotonRun run_;
+  PhotonMap tree_;
   cl::Kernel kernel_;
   const Scene& scene_;
   uint64_t count_;
@@ -129,7 +141,8 @@ uint32_t replicates_of(const CheckContext& context) { return context.full ? 192 
 
 constexpr const char* blunt = "standard error of the estimates";
 
-/// Many estimates from few photons each: their mean is the convolution, and their scatter goes by the number of photons.
+/// Many estimates from few photons each: their mean is the convolution, and their scatter goes by the number of
+/// photons.
 void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<CheckResult>& rows) {
   const uint32_t replicates = replicates_of(context), places = 4096;
   constexpr double radius = 0.0125 * height;
@@ -164,7 +177,8 @@ void check_noise(const CheckContext& context, Estimates& unbiased, std::vector<C
   const size_t first = rows.size();
   noise.rows("density/noise with count", "variance over 4/(3 k) E^2 and its terms of higher order",
              context.full ? 0.003 : 0.01, "of the variance", blunt, rows);
-  rows[first].plots.push_back({"Noise of an estimate of irradiance, independent photons", "photons within the radius", "noise, relative", {{"vitrum", curve}}, true, true});
+  rows[first].plots.push_back({"Noise of an estimate of irradiance, independent photons", "photons within the radius",
+                               "noise, relative", {{"vitrum", curve}}, true, true});
 }
 
 /// Many photons within wide radii: the bias is the kernel's second moment times the Laplacian.
@@ -192,7 +206,8 @@ void check_bias(const CheckContext& context, Estimates& unbiased, std::vector<Ch
   const size_t first = rows.size();
   bias.rows("density/bias with radius", "r^2 lap(E) / 12 + r^4 lap(lap(E)) / 384", context.full ? 0.02 : 0.2,
             "of the bias", blunt, rows);
-  rows[first].plots.push_back({"Bias of an estimate of irradiance by its radius", "radius [m]", "bias, relative", {{"vitrum", curve}}, true, true});
+  rows[first].plots.push_back({"Bias of an estimate of irradiance by its radius", "radius [m]", "bias, relative",
+                               {{"vitrum", curve}}, true, true});
 }
 
 /// Bias of the mean over passes whose radius shrinks.
@@ -252,36 +267,47 @@ void check_slope(const CheckContext& context, std::vector<CheckResult>& rows) {
   const double slope = fitted_exponent(errors);
   rows.push_back({"density/progressive: slope", errors.size(), std::abs(slope + 2.0 / 3.0), 0.05, "of the exponent",
                   "mean squared error ~ passes^(-2/3), Knaus and Zwicker 2011", printed("slope %.4f", slope),
-                  {{"Error over passes with a radius that shrinks", "passes", "mean squared error, relative", {{"vitrum", errors}}, true, true}}});
+                  {{"Error over passes with a radius that shrinks", "passes", "mean squared error, relative",
+                    {{"vitrum", errors}}, true, true}}});
 }
 
-/// The k nearest of n photons: in an even density, n times the share of the light within their circle is the k-th of n even
-/// numbers, so that the estimate has the mean k / (k - 1) and a mean square of k^2 (n - 1) / (n (k - 1) (k - 2)).
+/// The k nearest of n photons. The share of the light within their circle is the k-th of n even numbers: distributed as
+/// Beta(k, n - k + 1). By the moments of its inverse the estimate k Phi / (n pi r_k^2) is k / (k - 1) of an even
+/// irradiance, and has the variance below. In the circle of a curved irradiance E are pi r^2 (E + r^2 lap(E) / 8), to
+/// the next order, which adds k Phi lap(E) / (8 pi n E) to the mean and nothing to the variance.
 void check_nearest(const CheckContext& context, std::vector<CheckResult>& rows) {
-  constexpr int k = 50;
-  const uint64_t count = 100'000;
-  const double n = static_cast<double>(count);
-  Scene scene = lamp_over_plane(1.0);
-  scene.photons.estimate = PhotonEstimate::nearest;
-  scene.photons.nearest = k;
-  Gathering gathering(context, scene, 1024, count);
-  // Along the curvature of the irradiance, the mean over a circle of radius r is larger by r^2 lap(E) / 8.
-  std::vector<double> expected;
-  for (const Irradiance& truth : gathering.truth)
-    expected.push_back(truth.value + k * cone_power / (8 * pi * n * truth.value) * truth.laplacian);
-  std::vector<double> means, squares;
-  for (uint32_t replicate = 0; replicate < replicates_of(context); ++replicate) {
-    const std::vector<double> values = gathering.irradiance(replicate);
-    means.push_back(gathering.mean([&](size_t i) { return values[i] / expected[i]; }) * (k - 1) / k);
-    squares.push_back(gathering.mean([&](size_t i) { return values[i] / expected[i] * (values[i] / expected[i]); }) *
-                      ((k - 1.0) * (k - 2.0) * n / (k * k * (n - 1))));
+  const uint32_t replicates = replicates_of(context);
+  constexpr double series = 5e-6;  // the next order of the curvature where 320 circles hold all photons
+  Estimates mean, noise;
+  for (const int nearest : {10, 50}) {
+    const uint64_t count = (context.full ? 1600u : 320u) * static_cast<uint64_t>(nearest);
+    const double k = nearest, n = static_cast<double>(count);
+    Scene scene = lamp_over_plane(0.01);
+    scene.photons.estimate = PhotonEstimate::nearest;
+    scene.photons.nearest = nearest;
+    scene.photons.max_radius = height;
+    Gathering gathering(context, scene, context.full ? 4096 : 1024, count);
+    std::vector<double> expected;
+    for (const Irradiance& truth : gathering.truth)
+      expected.push_back(k / (k - 1) * truth.value + k * cone_power * truth.laplacian / (8 * pi * n * truth.value));
+    const double variance = k * k / ((k - 1) * (k - 1) * (k - 2)) * (1 - (k - 1) / n);  // of the irradiance's square
+    std::vector<double> means, squares;
+    for (uint32_t replicate = 0; replicate < replicates; ++replicate) {
+      const std::vector<double> values = gathering.irradiance(replicate);
+      means.push_back(gathering.mean([&](size_t i) { return values[i] / expected[i]; }));
+      squares.push_back(gathering.mean([&](size_t i) {
+        const double off = (values[i] - expected[i]) / gathering.truth[i].value;
+        return off * off / variance;
+      }));
+    }
+    const std::string what = printed("%d nearest of %llu photons", nearest, static_cast<unsigned long long>(count));
+    mean.add(means, 1.0, rounding + series, what);
+    noise.add(squares, 1.0, rounding + series, what);
   }
-  // What is left out of the irradiance's curvature is of its order squared, 1e-6.
-  Estimates mean, square;
-  mean.add(means, 1.0, rounding, printed("%d nearest of %llu photons", k, static_cast<unsigned long long>(count)));
-  square.add(squares, 1.0, rounding, printed("%d nearest of %llu photons", k, static_cast<unsigned long long>(count)));
-  mean.rows("density/k nearest", "k / (k - 1) of the irradiance", 1e-3, "relative", blunt, rows);
-  square.rows("density/k nearest: square", "k^2 / ((k - 1) (k - 2)) of its square", 3e-3, "relative", blunt, rows);
+  mean.rows("density/k nearest", "k / (k - 1) of the irradiance, Beta(k, n - k + 1)", context.full ? 6e-4 : 2.5e-3,
+            "relative", blunt, rows);
+  noise.rows("density/k nearest: noise", "variance k^2 / ((k - 1)^2 (k - 2)) (1 - (k - 1) / n) E^2",
+             context.full ? 0.005 : 0.02, "of the variance", blunt, rows);
 }
 
 }  // namespace
@@ -293,7 +319,7 @@ std::vector<CheckResult> check_density(const CheckContext& context) {
   check_bias(context, unbiased, others);
   check_progressive(context, others);
   check_slope(context, others);
-  if (context.full) check_nearest(context, others);
+  check_nearest(context, others);
   unbiased.rows("density/unbiased", "irradiance convolved with Epanechnikov's kernel", context.full ? 8e-4 : 2.5e-3,
                 "relative", blunt, rows);
   rows.insert(rows.end(), others.begin(), others.end());

@@ -20,11 +20,11 @@ Scene small_scene(int size) {
   scene.background = {0.1, 0.3, 0.6};
   scene.render.samples = 8;
   scene.render.passes = 2;
-  scene.photons.count = static_cast<uint64_t>(size) * 2000;
+  scene.photons.count = static_cast<uint64_t>(size) * 4000;
   scene.materials.push_back(glass(1.5));
   scene.materials[0].absorption = {0.1, 0.5, 2.0};
   scene.materials.push_back(surface(Surface::opaque, 0.7));
-  add(scene, Sphere{{0, 0.5, 0}, 0.3}, 0);
+  add(scene, Sphere{{0, 0.32, 0}, 0.3}, 0);
   add(scene, Plane{{0, 0, 0}, {0, 1, 0}, {}, {}}, 1);
   scene.lights.push_back({"lamp", {}, DiscLight{{0.1, 1.3, 0.2}, {0, -1, 0}, 0.05, Spectrum(100.0)}});
   return scene;

@@ -118,13 +118,7 @@ void compare_borders(const CheckContext& context, std::vector<CheckResult>& rows
 void compare_media(const CheckContext& context, std::vector<CheckResult>& rows) {
   const uint32_t count = context.full ? 8'000'000 : 800'000;
   FresnelInputs inputs(400);
-  Fields in(count, 3);
-  for (uint32_t i = 0; i < count; ++i) {
-    const auto [sigma_a, distance] = inputs.absorbing_path();
-    in(0, i) = sigma_a;
-    in(1, i) = distance;
-    in(2, i) = inputs.reflectance();
-  }
+  const Fields in = medium_inputs(inputs, count);
   compare(context, "medium", in, medium_outputs, [&in](uint32_t i) {
     return printed("sigma_a = %.9g, distance = %.9g, rho_d = %.9g", in(0, i), in(1, i), in(2, i));
   }, rows);

@@ -9,6 +9,7 @@
 
 #include "device/kernel_headers.hpp"
 #include "verify/check.hpp"
+#include "verify/fresnel_inputs.hpp"
 
 namespace vitrum {
 
@@ -27,6 +28,18 @@ class Fields {
   uint32_t count_;
   std::vector<float> values_;
 };
+
+/// Inputs of kernel "medium": sigma_a, distance and rho_d.
+inline Fields medium_inputs(FresnelInputs& inputs, uint32_t count) {
+  Fields in(count, 3);
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto [sigma_a, distance] = inputs.absorbing_path();
+    in(0, i) = sigma_a;
+    in(1, i) = distance;
+    in(2, i) = inputs.reflectance();
+  }
+  return in;
+}
 
 class FresnelKernel {
  public:
