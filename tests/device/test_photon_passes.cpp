@@ -24,14 +24,7 @@ Places sorted_places(const std::vector<cl_float8>& photons) {
 }  // namespace
 
 TEST_CASE("the passes of a replicate shoot the photons of one sequence, whatever launches and passes hold") {
-  Scene scene;
-  scene.camera = {CameraType::pinhole, {0, 3, 8}, {0, 0, 0}, {0, 1, 0}, 45.0};
-  scene.materials = {glass(1.5), surface(Surface::opaque, 0.5)};
-  add(scene, Sphere{{0, 0, 0}, 1.0}, 0);
-  add(scene, Plane{{0, -2, 0}, {0, 1, 0}, {}, {}}, 1);
-  scene.lights.push_back({"lamp", {}, PointLight{{0, 4, 0}, Spectrum(1.0)}});
-  scene.photons.estimate = PhotonEstimate::fixed_radius;
-  scene.photons.radius = 0.05;
+  const Scene scene = ball_over_plane(1.5, Spectrum(0.0), 4.0);
   Device device;
   PhotonRun run(scene, device, 100'000);
   const Places whole = sorted_places(run.shoot(0, 100'000));  // more than a launch
@@ -47,4 +40,17 @@ TEST_CASE("the passes of a replicate shoot the photons of one sequence, whatever
   both.insert(both.end(), other.begin(), other.end());
   std::sort(both.begin(), both.end());
   CHECK(std::adjacent_find(both.begin(), both.end()) == both.end());
+}
+
+TEST_CASE("a pass that stores all of its photons takes no more memory for each than its capacity reckons with") {
+  // Air reflects nothing; the plane takes all.
+  const Scene scene = ball_over_plane(1.0, Spectrum(0.0), INFINITY);
+  Device device;
+  constexpr uint64_t count = 300'000;
+  PhotonRun run(scene, device, count);
+  run.run(0, 0, 0, count);
+  REQUIRE(run.map().count == count);
+  const double bytes = static_cast<double>(run.map().photons.size() * sizeof(float)) / count;
+  const double room = static_cast<double>(std::min(device.info().max_allocation, device.info().memory / 2));
+  CHECK(bytes * static_cast<double>(PhotonPass::capacity(device)) <= room);
 }

@@ -168,3 +168,30 @@ TEST_CASE("the balance of power holds where a few photons carry far more than th
     CHECK(std::abs(ends[c] / (p.shot[c] + p.split[c]) - 1.0) < 1e-6);
   }
 }
+
+TEST_CASE("a ball lies in the shadow of a triangle that is before the lamp, and only then") {
+  Scene scene = white_plane();
+  scene.shapes.clear();
+  add(scene, Sphere{{0, -0.5, 0}, 0.5}, 0);   // the origin is its top
+  scene.lights.push_back({"l", {}, PointLight{{0, 2, 0}, Spectrum(4.0)}});
+  Scene beyond = scene;
+  add(scene, Triangle{{-3, 1.5, -3}, {3, 1.5, -3}, {0, 1.5, 3}, {}, {}, {}}, 0);
+  add(beyond, Triangle{{-3, 2.5, -3}, {3, 2.5, -3}, {0, 2.5, 3}, {}, {}, {}}, 0);
+  CHECK(irradiance(scene, 1, "radiance") == 0.0);
+  // The pixels lie within 2e-4 m of the top.
+  CHECK(irradiance(beyond, 1, "radiance") == doctest::Approx(1.0).epsilon(1e-6));
+}
+
+TEST_CASE("a plane in grazing light does not shade itself") {
+  Scene scene = white_plane();
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, 1.0, 0.2));
+  scene.shapes.clear();
+  add(scene, Plane{{0, 0, 0}, normal, {}, {}}, 0);
+  add(scene, Sphere{{-5, 5, 5}, 0.1}, 0);    // so that planes have other numbers than balls
+  const double cosine = 1e-3;
+  const glm::dvec3 along = glm::normalize(glm::cross(normal, glm::dvec3(1, 2, 3)));
+  scene.lights.push_back({"l", {}, PointLight{3.0 * (along + cosine * normal), Spectrum(9.0)}});
+  // What roundings of the place and of the lamp's, which are below 4e-7 m, are to its 3e-3 m above the plane; a pixel
+  // in shadow would be 1/16.
+  CHECK(irradiance(scene, 1, "radiance") == doctest::Approx(cosine).epsilon(2e-4));
+}

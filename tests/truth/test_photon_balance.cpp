@@ -15,15 +15,7 @@ using namespace vitrum;
 // Photons that wait for a packet of their own must not overrun their queue: it lost their power once, with 16 lanes first
 // of all in this very scene.
 TEST_CASE("the balance of power holds where photons often change between inside and outside") {
-  Scene scene;
-  scene.camera = {CameraType::pinhole, {0, 3, 8}, {0, 0, 0}, {0, 1, 0}, 45.0};
-  scene.materials = {glass(2.4), surface(Surface::opaque, 0.5)};
-  add(scene, Sphere{{0, 0, 0}, 1.0}, 0);
-  add(scene, Plane{{0, -2, 0}, {0, 1, 0}, {}, {}}, 1);
-  scene.lights.push_back({"sun", {}, DirectionalLight{{0, -1, 0}, Spectrum(1.0)}});
-  scene.photons.estimate = PhotonEstimate::fixed_radius;
-  scene.photons.radius = 0.05;
-  scene.photons.max_depth = 31;
+  Scene scene = ball_over_plane(2.4, Spectrum(0.0), INFINITY);
   scene.render.seed = 7;
   Device device;
   PhotonRun run(scene, device, 500'000);
@@ -39,18 +31,19 @@ TEST_CASE("the balance of power holds where photons often change between inside 
 
 namespace {
 
-/// A lamp of 1 W/sr at the origin and two balls of air, nothing else.
-Scene two_balls_of_air(const Sphere& a, const Sphere& b) {
+/// A lamp of 1 W/sr at the origin, in the dark.
+Scene lamp() {
   Scene scene;
   scene.camera = {CameraType::pinhole, {0, 3, 8}, {0, 0, 0}, {0, 1, 0}, 45.0};
-  scene.materials = {glass(1.0)};
-  add(scene, a, 0);
-  add(scene, b, 0);
+  scene.materials = {glass(1.0), surface(Surface::opaque, 0.5), surface(Surface::mirror)};
   scene.lights.push_back({"lamp", {}, PointLight{{0, 0, 0}, Spectrum(1.0)}});
   scene.photons.estimate = PhotonEstimate::fixed_radius;
   scene.photons.radius = 0.05;
   return scene;
 }
+constexpr uint32_t air = 0, matt = 1, mirror = 2;     // materials of lamp()
+
+void add_floor(Scene& scene, double y) { add(scene, Plane{{0, y, 0}, {0, 1, 0}, {}, {}}, matt); }
 
 /// Solid angle of the cone from the origin around a ball whose centre is at distance d [sr].
 double solid_angle(double radius, double d) { return 2 * std::numbers::pi * (1 - std::sqrt(1 - radius * radius / (d * d))); }
@@ -78,23 +71,26 @@ void check_power_shot(const Scene& scene, double truth) {
 }  // namespace
 
 TEST_CASE("where casters share a direction, the light's power is shared too") {
-  const Sphere ball{{0, -2, 0}, 0.8};
+  Scene scene = lamp();
+  add(scene, Sphere{{0, -2, 0}, 0.8}, air);
   SUBCASE("one behind the other") {
-    check_power_shot(two_balls_of_air(ball, {{0, -4, 0}, 1.0}), solid_angle(0.8, 2));
+    add(scene, Sphere{{0, -4, 0}, 1.0}, air);
+    check_power_shot(scene, solid_angle(0.8, 2));
   }
   SUBCASE("side by side, apart") {
-    check_power_shot(two_balls_of_air(ball, {{4, 0, 0}, 1.0}), solid_angle(0.8, 2) + solid_angle(1.0, 4));
+    add(scene, Sphere{{4, 0, 0}, 1.0}, air);
+    check_power_shot(scene, solid_angle(0.8, 2) + solid_angle(1.0, 4));
   }
   SUBCASE("the lamp in one of them, which lies the other way") {
-    check_power_shot(two_balls_of_air(ball, {{0, 0.3, 0}, 0.5}), 4 * std::numbers::pi);
+    add(scene, Sphere{{0, 0.3, 0}, 0.5}, air);
+    check_power_shot(scene, 4 * std::numbers::pi);
   }
 }
 
 TEST_CASE("photons of a lamp that is far away fill their narrow cone evenly") {
-  Scene scene = two_balls_of_air({{0, -1000, 0}, 1.0}, {{0, -1000, 0}, 0.5});
-  scene.shapes.pop_back();
-  scene.materials.push_back(surface(Surface::opaque, 0.5));
-  add(scene, Plane{{0, -1002, 0}, {0, 1, 0}, {}, {}}, 1);
+  Scene scene = lamp();
+  add(scene, Sphere{{0, -1000, 0}, 1.0}, air);
+  add_floor(scene, -1002);
   Device device;
   constexpr uint64_t count = 20'000;
   const std::vector<cl_float8> photons = PhotonRun(scene, device, count).shoot(0, count);
@@ -109,15 +105,30 @@ TEST_CASE("photons of a lamp that is far away fill their narrow cone evenly") {
 }
 
 TEST_CASE("photons that miss what they are aimed at are direct light, which the map does not hold") {
-  Scene scene = two_balls_of_air({{0, 9, 0}, 1.0}, {{0, 9, 0}, 1.0});
-  scene.shapes.clear();
-  scene.materials = {surface(Surface::mirror), surface(Surface::opaque, 0.5)};
+  Scene scene = lamp();
   // Its bound is larger than the triangle, which throws the light back to where nothing is.
-  add(scene, Triangle{{-0.2, -1, -0.1}, {0, -1, 0.2}, {0.2, -1, -0.1}, {}, {}, {}}, 0);
-  add(scene, Plane{{0, -2, 0}, {0, 1, 0}, {}, {}}, 1);
+  add(scene, Triangle{{-0.2, -1, -0.1}, {0, -1, 0.2}, {0.2, -1, -0.1}, {}, {}, {}}, mirror);
+  add_floor(scene, -2);
   Device device;
   PhotonRun run(scene, device, 20'000);
   CHECK(run.shoot(0, 20'000).empty());
   CHECK(run.balance().photons_direct > 2'000);
   CHECK(run.balance().photons_lost > 2'000);
+}
+
+TEST_CASE("photons meet max_depth surfaces and no more") {
+  // Into the air, out of it, and the floor: that is three.
+  Scene scene = lamp();
+  add(scene, Sphere{{0, -2, 0}, 0.8}, air);
+  add_floor(scene, -4);
+  Device device;
+  constexpr uint64_t count = 10'000;
+  for (const int max_depth : {1, 2, 3, 4}) {
+    CAPTURE(max_depth);
+    scene.photons.max_depth = max_depth;
+    PhotonRun run(scene, device, count);
+    CHECK(run.shoot(0, count).size() == (max_depth < 3 ? 0 : count));
+    CHECK(run.balance().photons_cut == (max_depth < 3 ? count : 0));
+    CHECK(run.balance().surfaces_met == static_cast<uint64_t>(std::min(max_depth, 3)) * count);
+  }
 }

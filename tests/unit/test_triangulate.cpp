@@ -166,6 +166,19 @@ TEST_CASE("bridged holes stay holes") {
     check_exact_cover(plate);
     CHECK(cut(plate).area == doctest::Approx(81 - 8));
   }
+  // Corners where a bridge ends come twice, and here no ear is free of them.
+  SUBCASE("two holes, bridged from opposite corners") {
+    const auto plate = flat({{0, 0}, {12, 0}, {6, 4}, {2, 2}, {1, 2}, {6, 4}, {12, 0}, {12, 12}, {2, 9}, {3, 9}, {7, 4},
+                             {2, 9}, {12, 12}, {0, 12}});
+    check_exact_cover(plate);
+    CHECK(cut(plate).area == doctest::Approx(144 - 1 - 2.5));
+  }
+  SUBCASE("two holes, the second bridged from where the bridge to the first ends") {
+    const auto plate = flat({{0, 0}, {24, 0}, {11, 10}, {8, 3}, {7, 1}, {11, 10}, {5, 5}, {7, 10}, {6, 6}, {5, 5},
+                             {11, 10}, {24, 0}, {0, 24}});
+    check_exact_cover(plate);
+    CHECK(cut(plate).area == doctest::Approx(288 - 0.5 - 1.5));
+  }
   SUBCASE("a chain of holes, each bridged from the one before") {
     std::vector<glm::vec2> plate{{0, 2}, {0, 0}, {40, 0}, {40, 4}, {0, 4}, {0, 2}};
     constexpr int holes = 9;
