@@ -92,12 +92,24 @@ FUNCTION void find_contacts(const Scene scene, const Ray* ray, const Hit first, 
 
 #if HAS_DIELECTRIC
 
-// A ray that grazes an edge of a transparent mesh may have slipped past it: it went in, but from where rounding has put it
-// the mesh lies behind. It shows when a ray inside of a closed mesh meets its front or nothing, or one outside its back.
-// Then the stack of media is mended: the ray is on the other side.
-FUNCTION uint mended_media(const Scene scene, const Ray* ray, const Hit hit, const uint media) {
-  const int astray = hit.t < INFINITY ? hit.shape == ray->shape && hit.front != ray->front : !ray->front;
-  if (!astray || !scene.bodies[ray->shape - (scene.n_spheres + scene.n_flats)].closed) return media;
+// A ray that has gone into a closed mesh meets its back next, one that has gone out of it its front or nothing. Rounding
+// near edges can make it otherwise, in one of two ways.
+FUNCTION int is_astray(const Ray* ray, const Hit hit) {
+  return hit.t < INFINITY ? hit.shape == ray->shape && hit.front != ray->front : !ray->front;
+}
+
+// One: rounding has put the start below the plane of the very triangle that the ray leaves, or back along a ray that grazes
+// it, by as much as the ray takes to rise from the plane. There it may still be beyond an edge, and meet a neighbour from
+// the side that it came from, or the one again that it met before. It has crossed this surface already.
+FUNCTION int is_crossed_already(const Scene scene, const Ray* ray, const Hit hit) {
+  if (hit.shape != ray->shape || !(hit.front || ray->front)) return 0;
+  const float3 normal = triangle_normal(scene, &scene.triangles[ray->primitive]);
+  return hit.t * fabs(lane_dot3(ray->direction, normal)) <= ray->error;
+}
+
+// The other: a ray that grazes an edge has slipped past it. It went in, but from where rounding has put it the mesh lies
+// behind, or the reverse. Then the stack of media is mended: the ray is on the other side.
+FUNCTION uint mended_media(const Scene scene, const Ray* ray, const uint media) {
   const uint medium = scene.materials[scene.triangles[ray->primitive].material].medium;
   return ray->front ? entered(scene, media, medium) : left(media, medium);
 }
@@ -107,19 +119,26 @@ FUNCTION uint mended_media(const Scene scene, const Ray* ray, const Hit hit, con
 // Replaces the exact shape in `lane` by a triangle that comes before it.
 FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const uint from, uint lane, SurfacePacket* surface,
                          Uint* media) {
-  const Ray ray = mesh_ray(scene, packet, from, lane);
-  Hit hit;
-  hit.t = LANE(surface->t, float, lane);
-  hit.shape = LANE(surface->from, uint, lane);
-  hit.primitive = 0;
+  Ray ray = mesh_ray(scene, packet, from, lane);
+  Hit exact;
+  exact.t = LANE(surface->t, float, lane);
+  exact.shape = LANE(surface->from, uint, lane);
+  exact.primitive = 0;
 #if HAS_CONTACTS
-  const float t_exact = hit.t;
   const int exact_is_opaque =
       scene.materials[LANE(surface->material, uint, lane)].surface != SURFACE_DIELECTRIC;
 #endif
-  const int found = tree_closest(&ray, scene.nodes, scene.leaves, &hit);
+  Hit hit = exact;
+  int found = tree_closest(&ray, scene.nodes, scene.leaves, &hit);
 #if HAS_DIELECTRIC
-  if (ray.shape != NO_INDEX) SET_LANE(*media, uint, lane, mended_media(scene, &ray, hit, LANE(*media, uint, lane)));
+  if (ray.shape != NO_INDEX && scene.bodies[ray.shape - (scene.n_spheres + scene.n_flats)].closed) {
+    while (hit.t < INFINITY && is_crossed_already(scene, &ray, hit)) {
+      ray.t_min = hit.t;
+      hit = exact;
+      found = tree_closest(&ray, scene.nodes, scene.leaves, &hit);
+    }
+    if (is_astray(&ray, hit)) SET_LANE(*media, uint, lane, mended_media(scene, &ray, LANE(*media, uint, lane)));
+  }
 #endif
 #if HAS_CONTACTS
   int dielectric = !exact_is_opaque;
@@ -129,7 +148,7 @@ FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const uint 
     const float error = contact_error(triangle_error(corner_of(scene, triangle, 0), corner_of(scene, triangle, 1),
                                                      corner_of(scene, triangle, 2)), ray.origin);
     // An opaque exact shape in contact with the glass wins.
-    const float gap = (t_exact - hit.t) * fabs(lane_dot3(ray.direction, LANE3(surface->geometric_normal, lane)));
+    const float gap = (exact.t - hit.t) * fabs(lane_dot3(ray.direction, LANE3(surface->geometric_normal, lane)));
     if (dielectric && exact_is_opaque && gap <= error) return;
     set_mesh_surface(scene, hit, lane, surface);
   }

@@ -6,7 +6,7 @@
 typedef struct {
   float centre[3];             // of the mesh
   float distance;              // [m] from the point aimed at; 0: from inside
-  float slant;                 // how far rays from outside come from aside: .7: within 45 degrees, 5: mostly grazing
+  float slant;                 // how far rays from outside come from aside: .7: within 45 degrees, 5: mostly grazing, 50: all
   float spread;                // [m], edges: rays pass them by at most so much; else the radius of the ball aimed at
   uint crossings;              // of the surface that a chain may have: 2 straight through a convex mesh
   uint edges;                  // 1: edges, every eighth time their ends

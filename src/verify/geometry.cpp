@@ -169,7 +169,8 @@ std::vector<CheckResult> check_geometry(const CheckContext& context) {
         told(6);
         for (const double distance : {0.0, 2 * body.size})
           for (const uint32_t edges : {0u, 1u}) {
-            const AimData aim{{0, 0, 0}, static_cast<float>(distance), 5, static_cast<float>(edges ? 1e-6 * body.size : body.size),
+            const AimData aim{{0, 0, 0}, static_cast<float>(distance), edges ? 50.0f : 5.0f,
+                              static_cast<float>(edges ? 1e-6 * body.size : body.size),
                               index == 1.0 ? 2u : chain_depth, edges, static_cast<uint32_t>(100 * index)};
             (index == 1.0 ? straight : refracted)
                 .add(target.shoot(aim, chains, chain_depth), printed("%s%s, n = %g, %g m away, %s", body.name, smooth ? ", smooth" : "",
