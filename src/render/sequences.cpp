@@ -17,6 +17,10 @@ long double generalised_golden_ratio(int d) {
   return x;
 }
 
+// Once each: every sample of a picture and every launch of photons asks for them.
+const long double golden_ratio = generalised_golden_ratio(1), ratio_of_2 = generalised_golden_ratio(2),
+                  ratio_of_4 = generalised_golden_ratio(4);
+
 }  // namespace
 
 uint64_t mix_bits(uint64_t a, uint64_t b) {
@@ -33,12 +37,12 @@ std::array<kernel::SequenceData, PHOTON_DIMENSIONS> photon_sequences(Sampling sa
   const uint64_t key = mix_bits(mix_bits(seed, replicate), sequence);
   // Direction and place on an area light are spread evenly together, in the plane or in four dimensions. Choices along
   // the path (2) and of a mesh light's face (5) run by themselves: their projections would cost the others evenness.
-  const long double ratio = generalised_golden_ratio(area_light ? 4 : 2);
+  const long double ratio = area_light ? ratio_of_4 : ratio_of_2;
   const std::array<long double, PHOTON_DIMENSIONS> steps = {1 / ratio,
                                                             1 / (ratio * ratio),
                                                             std::sqrt(2.0L),
-                                                            std::pow(ratio, -3.0L),
-                                                            std::pow(ratio, -4.0L),
+                                                            1 / (ratio * ratio * ratio),
+                                                            1 / (ratio * ratio * ratio * ratio),
                                                             std::sqrt(3.0L)};
   for (size_t d = 0; d < PHOTON_DIMENSIONS; ++d) {
     kernel::SequenceData& data = dimensions[d];
@@ -55,17 +59,14 @@ std::array<kernel::SequenceData, PHOTON_DIMENSIONS> photon_sequences(Sampling sa
 }
 
 std::array<float, 2> r2_point(uint64_t index) {
-  static const long double ratio = generalised_golden_ratio(2);
-  std::array<float, 2> point{};
-  for (int d = 0; d < 2; ++d) {
-    const uint64_t bits = fixed_point(std::pow(ratio, -(d + 1.0L))) * index;
-    point[static_cast<size_t>(d)] = static_cast<float>(bits >> 40) * 0x1p-24f;
-  }
-  return point;
+  const auto coordinate = [&](long double step) {
+    return static_cast<float>(fixed_point(step) * index >> 40) * 0x1p-24f;
+  };
+  return {coordinate(1 / ratio_of_2), coordinate(1 / (ratio_of_2 * ratio_of_2))};
 }
 
 float golden_point(uint64_t index) {
-  return static_cast<float>(fixed_point(1.0L / generalised_golden_ratio(1)) * index >> 40) * 0x1p-24f;
+  return static_cast<float>(fixed_point(1 / golden_ratio) * index >> 40) * 0x1p-24f;
 }
 
 }  // namespace vitrum

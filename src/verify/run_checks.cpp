@@ -10,7 +10,8 @@
 namespace vitrum {
 namespace {
 
-constexpr size_t workers = 2;
+// More than there are processors: PoCL compiles for one of them at a time, and much of the truth is computed by one thread.
+constexpr size_t workers = 3;
 
 class CheckRun {
  public:

@@ -1,6 +1,6 @@
 #pragma once
-// Runs groups of checks, two at a time: while one waits for its kernels to be compiled, or for a launch too small for all
-// threads, the other works.
+// Runs groups of checks, three at a time: while one waits for its kernels to be compiled, or for a launch too small for
+// all threads, another works.
 
 #include <functional>
 #include <string>
