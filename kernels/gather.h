@@ -1,5 +1,5 @@
-// The caustic's irradiance at a place, from the photon map: from the photons within a fixed radius (a grid) or from the
-// k nearest (a tree). The SIMD is inside the ray: eight photons at a time.
+// The caustic's irradiance at a place, from the photon map: from the photons within a fixed radius or those whose
+// footprints cover it (a grid), or from the k nearest (a tree). The SIMD is inside the ray: eight photons at a time.
 #ifndef VITRUM_GATHER_H
 #define VITRUM_GATHER_H
 
@@ -32,16 +32,21 @@ FUNCTION uint photons_in(const Sums* sums) {
 
 FUNCTION float3 total_power(const Sums* sums) { return (float3)(sum8(sums->red), sum8(sums->green), sum8(sums->blue)); }
 
-#if CAUSTICS == CAUSTICS_NEAREST
-#include "gather_nearest.h"
-#elif CAUSTICS == CAUSTICS_WITHIN
-#include "gather_within.h"
-#else
+#if CAUSTICS == CAUSTICS_NONE
 typedef struct {
   uint count;                  // 0
 } PhotonMap;
 #define PHOTON_MAP_PARAMETERS
 #define PHOTON_MAP { 0 }
+#elif CAUSTICS == CAUSTICS_NEAREST
+#include "gather_nearest.h"
+#else
+#include "gather_grid.h"
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#include "gather_footprints.h"
+#else
+#include "gather_within.h"
+#endif
 #endif
 
 // A kernel lists `PHOTON_MAP_PARAMETERS` and starts with `const PhotonMap map = PHOTON_MAP;`. The host sets the arguments

@@ -12,6 +12,10 @@
 // far photons cost nothing but a failed test of distance. Of the 3 x 3 x 3 cells around a place each is visited once,
 // also where the grid has fewer along an axis. Cells along x are neighbours in memory; there are at least 4 of them.
 //
+// With footprints, a photon in the map has a kernel of its own, a tent over a parallelogram (footprint.h): rows and fields are
+// those of MAP_ROW and MAP_FIELDS then, and power is in W/m2. A large footprint is cut into several, and each is an entry of
+// all cells that it reaches into. What a run stores is where photons arrived.
+//
 // For the k nearest, photons are in a tree instead, eight in a leaf and eight children at a node: field f of photon j of
 // leaf i at [(i * PHOTON_FIELDS + f) * 8 + j]. The tree is left-balanced (Jensen 2001, section 4.5.2), so that it needs
 // no pointers: the children of node i of a level are 8 i to 8 i + 7 of the level below, level 0 the leaves.
@@ -28,6 +32,30 @@
 #define PHOTON_FIELDS 7
 #define PHOTON_CELL 7          // uint: of the grid; for the sort
 #define PHOTON_ROW 8
+// With footprints, in the map:
+#define FOOTPRINT_U 7          // 3 floats [1/m]: across the parallelogram's first side, from -1 to 1 where the tent ends
+#define FOOTPRINT_V 10         // 3 floats [1/m]: and its second
+#define FOOTPRINT_FIELDS 13
+#define FOOTPRINT_CELL 15
+#define FOOTPRINT_ROW 16
+// and in a run:
+#define ARRIVED_POINT 7        // uint: of the lattice of emission; NO_POINT: none
+#define ARRIVED_NORMAL 8       // 3 floats
+#define ARRIVED_FIELDS 11
+#define NO_POINT 0xffffffffu
+
+#ifdef __OPENCL_VERSION__
+#include "switches.h"
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#define MAP_FIELDS FOOTPRINT_FIELDS
+#define MAP_CELL FOOTPRINT_CELL
+#define MAP_ROW FOOTPRINT_ROW
+#else
+#define MAP_FIELDS PHOTON_FIELDS
+#define MAP_CELL PHOTON_CELL
+#define MAP_ROW PHOTON_ROW
+#endif
+#endif
 
 #define BUCKET_UNIT 16u        // floats
 typedef struct {
@@ -38,9 +66,27 @@ typedef struct {
 // A run may store two photons for each that it shoots, since one may branch off. And there is room for a packet beyond, so
 // that packets may be written whole.
 FUNCTION uint photons_stride(uint run_length) { return 2u * run_length + 16u; }
-FUNCTION ulong photon_in_run(uint run_length, uint run, uint field) {
-  return ((ulong)run * PHOTON_ROW + field) * photons_stride(run_length);
+// `row`: PHOTON_ROW, or FOOTPRINT_ROW where there are footprints.
+FUNCTION ulong photon_in_run(uint run_length, uint run, uint field, uint row) {
+  return ((ulong)run * row + field) * photons_stride(run_length);
 }
+
+// A lattice of emission: photons first + i, i = 0, 1, ..., are at (column + shift_u) / columns, (row + shift_v) / rows of the
+// unit square, column by column; the number of rows is a power of
+// two.
+typedef struct {
+  uint first;
+  uint columns;                // 0: there is no lattice
+  uint log2_rows;
+  float shift_u, shift_v;      // in [0, 1)
+} LatticeData;
+
+// How large footprints may be.
+typedef struct {
+  float eye[3];                // of the camera [m]
+  float sharpness;             // least size by distance from the eye: what lies between two samples of a pixel
+  float largest;               // sides beyond that are cut [m]
+} FootprintLimits;
 
 // Cell size [m] as its inverse; log2 of the number of cells along each axis, and of those in a bucket.
 typedef struct {
@@ -83,6 +129,17 @@ FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
   return ((z << grid.log2_y) | y) << grid.log2_x;
 }
 
+// Large footprints, level 1, are listed by cells so many times larger. They share the grid with the small ones' cells, half
+// of it away from those of the same place, where there is less of a crowd; the highest bits of an entry's direction tell
+// them apart.
+#define LEVEL_RATIO 4.0f
+#define LEVEL_SHIFT 30u
+
+FUNCTION uint cell_of_level(const GridData grid, uint level, int ix, int iy, int iz) {
+  const uint x = ((uint)ix + (level << grid.log2_x >> 1)) & ((1u << grid.log2_x) - 1u);
+  return row_of_cells(grid, iy + (int)(level << grid.log2_y >> 1), iz + (int)(level << grid.log2_z >> 1)) | x;
+}
+
 FUNCTION Uint cells_of(const GridData grid, const Vec3 p) {
   const Uint ix = cell_coordinates(p.x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
   const Uint iy = cell_coordinates(p.y, grid.inverse_cell) & ((1u << grid.log2_y) - 1u);
@@ -103,6 +160,8 @@ FUNCTION Uint packed_direction(const Vec3 d) {
 // A photon counts for a surface if it came to the surface's front, and lies within this share of the radius off its
 // plane: on curved surfaces and in corners, the rest lies on something else.
 #define PLANE_SHARE 0.25f
+// The same for footprints, whose cells it makes thicker.
+#define FOOTPRINT_OFF_PLANE 0.125f
 
 FUNCTION int8 came_to_front(int8 packed, float3 n) {
   const float8 along = convert_float8(packed << 22 >> 22) * n.x + convert_float8(packed << 12 >> 22) * n.y +

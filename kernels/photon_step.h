@@ -4,6 +4,7 @@
 
 #include "interact.h"
 #include "outcome.h"
+#include "photon_map.h"
 #include "sampler.h"
 
 typedef struct {
@@ -12,6 +13,10 @@ typedef struct {
   Float t_min;
   Uint stack, from, path;
   Uint history;                // surfaces met; HAS_BRANCHED: a photon has branched off this one, or this one off another
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  Uint point;                  // of the lattice of emission; NO_POINT: none
+  Uint way;                    // hash of what it met and did there: photons of one way are neighbours all along
+#endif
   Mask alive;
 } Photons;
 
@@ -133,6 +138,11 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   // Those that end keep the direction that they came from.
   photons->direction = next;
   photons->alive = alive & (outcome == OUTCOME_ALIVE);
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  photons->way = hash_pair(photons->way, surface->material << 1 | ((front == entering) ? (Uint)1 : (Uint)0));
+  branched->point = NO_POINT;
+  branched->way = 0;
+#endif
   branched->history = photons->history;
   branched->origin = photons->origin;
   branched->t_min = photons->t_min;

@@ -31,6 +31,7 @@
 #define CAUSTICS_NONE 0
 #define CAUSTICS_WITHIN 1
 #define CAUSTICS_NEAREST 2
+#define CAUSTICS_FOOTPRINTS 3
 #ifndef CAUSTICS
 #error "CAUSTICS: one of CAUSTICS_..."
 #endif

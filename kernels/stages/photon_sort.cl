@@ -1,8 +1,11 @@
 // Stage photon_sort: a stable sort of the photon map into its grid, in two steps: runs into buckets of neighbouring
-// cells, few enough that the processor follows all of them, then each bucket, which fits its caches, into cells.
+// cells, few enough that the processor follows all of them, then each bucket, which fits its caches, into cells. With
+// footprints, stage photon_footprints does the first.
 // Runs, buckets and cells: photon_map.h. What goes where is added up by the host (src/render/photon_grid.cpp).
 #include "outcome.h"
 #include "photon_map.h"
+
+#if CAUSTICS != CAUSTICS_FOOTPRINTS
 
 // places: for each bucket, the row of the run's next photon.
 BODY move_run(const uint stored, const uint run_length, const uint bucket_shift, __global const float* restrict fields,
@@ -26,9 +29,11 @@ KERNEL void sort_into_buckets(const uint n_runs, const uint run_length, const ui
                               __global uint* places, __global float8* rows) {
   const uint run = get_global_id(0);
   if (run < n_runs)
-    move_run(reports[run].photons[OUTCOME_STORED], run_length, bucket_shift, photons + photon_in_run(run_length, run, 0),
+    move_run(reports[run].photons[OUTCOME_STORED], run_length, bucket_shift, photons + photon_in_run(run_length, run, 0, PHOTON_ROW),
              places + run * buckets, rows);
 }
+
+#endif
 
 // Sorts a bucket of `count` photons from rows to columns, by way of `columns`, which has room for all of it. `first`: of
 // its cells; next: room for as many numbers as there are cells.
@@ -36,7 +41,7 @@ BODY sort_bucket(const uint first_cell, const uint cells, const uint count, cons
                  __global float* restrict bucket, __global float* restrict columns, __global uint* restrict next,
                  __global uint* restrict first) {
   for (uint cell = 0; cell < cells; ++cell) next[cell] = 0;
-  for (uint i = 0; i < count; ++i) ++next[as_uint(bucket[PHOTON_ROW * i + PHOTON_CELL]) - first_cell];
+  for (uint i = 0; i < count; ++i) ++next[as_uint(bucket[MAP_ROW * i + MAP_CELL]) - first_cell];
   uint sum = 0;
   for (uint cell = 0; cell < cells; ++cell) {
     const uint n = next[cell];
@@ -46,21 +51,16 @@ BODY sort_bucket(const uint first_cell, const uint cells, const uint count, cons
   first[cells] = sum;
   // Which row comes to each place is kept where its x will be; then places are filled in order.
   for (uint i = 0; i < count; ++i)
-    columns[next[as_uint(bucket[PHOTON_ROW * i + PHOTON_CELL]) - first_cell]++] = as_float(i);
+    columns[next[as_uint(bucket[MAP_ROW * i + MAP_CELL]) - first_cell]++] = as_float(i);
   for (uint i = 0; i < count; ++i) {
-    const float8 photon = vload8(as_uint(columns[i]), bucket);
-    columns[i] = photon.s0;
-    columns[stride + i] = photon.s1;
-    columns[2 * stride + i] = photon.s2;
-    columns[3 * stride + i] = photon.s3;
-    columns[4 * stride + i] = photon.s4;
-    columns[5 * stride + i] = photon.s5;
-    columns[6 * stride + i] = photon.s6;
+    __global const float* row = bucket + MAP_ROW * as_uint(columns[i]);
+    // Its place is the last to be read and the first to be lost.
+    for (uint field = MAP_FIELDS; field-- > 0;) columns[field * stride + i] = row[field];
   }
   // Whoever reads whole vectors finds numbers behind the last.
-  for (uint field = 0; field < PHOTON_FIELDS; ++field)
+  for (uint field = 0; field < MAP_FIELDS; ++field)
     for (uint i = count; i < stride; ++i) columns[field * stride + i] = 0.0f;
-  for (uint i = 0; i < PHOTON_FIELDS * stride; i += 8) vstore8(vload8(0, columns + i), 0, bucket + i);
+  for (uint i = 0; i < MAP_FIELDS * stride; i += 8) vstore8(vload8(0, columns + i), 0, bucket + i);
 }
 
 // Sorts all buckets. Work-item w takes those listed at [first_task[w], first_task[w + 1]), one after the other, and has

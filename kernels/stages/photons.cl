@@ -4,6 +4,7 @@
 // A work-item minds one run: WIDTH photons at a time, in registers from the light to where they end. The few that go
 // other ways than most wait until they fill a packet of their own, so that lanes rarely idle.
 #include "emission.h"
+#include "footprint.h"
 #include "photon_map.h"
 #include "photon_step.h"
 #include "trace.h"
@@ -31,7 +32,8 @@ FUNCTION void total_of_lanes(const Float sum, const Float rest, __global float* 
 // Photons `first` to `first + WIDTH` of the sequences.
 FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __global const CasterData* casters,
                          const uint n_casters, const uint caster, __global const SequenceData* sequences,
-                         const float share, const float upstream, const uint first, Aim* aim, int* aimed) {
+                         const float share, const float upstream, const LatticeData lattice, const uint first, Aim* aim,
+                         int* aimed) {
   Float u_light = 0.0f;
   Float v_light = 0.0f;
   Uint face = 0;
@@ -48,6 +50,10 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   Float u[2];
   u[0] = sequence_float(&sequences[0], first);
   u[1] = sequence_float(&sequences[1], first);
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  const Uint point = LANES + (lattice.first + first);
+  if (lattice.columns > 0) lattice_point(lattice, point, u);
+#endif
   const Emission emission = emit(light, casters, n_casters, caster, from, aim, u, upstream);
   Photons photons;
   photons.origin = emission.origin;
@@ -58,6 +64,10 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   photons.from = light->shape;
   photons.path = sequence_bits(&sequences[2], first);
   photons.history = 0;
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  photons.point = lattice.columns > 0 ? point : (Uint)NO_POINT;
+  photons.way = 0;
+#endif
   photons.alive = (Mask)-1;
   return photons;
 }
@@ -65,7 +75,11 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
 // Photons that wait for a packet of their own: field f of the k-th at [f][k]. A packet is emitted only while fewer than
 // WIDTH wait in either queue. One that is taken puts no more back than it had, and as many that branch off, which do not
 // branch again: so less than 4 WIDTH wait in both.
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#define WAITING_FIELDS 16
+#else
 #define WAITING_FIELDS 14
+#endif
 
 typedef struct {
   float fields[WAITING_FIELDS][6 * WIDTH];
@@ -89,6 +103,10 @@ FUNCTION void wait_in(Waiting* waiting, const Photons* photons, const Mask which
     waiting->fields[11][k] = as_float(LANE(photons->from, uint, lane));
     waiting->fields[12][k] = as_float(LANE(photons->path, uint, lane));
     waiting->fields[13][k] = as_float(LANE(photons->history, uint, lane));
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+    waiting->fields[14][k] = as_float(LANE(photons->point, uint, lane));
+    waiting->fields[15][k] = as_float(LANE(photons->way, uint, lane));
+#endif
   }
 }
 
@@ -108,6 +126,10 @@ FUNCTION Photons take_waiting(Waiting* waiting) {
   photons.from = AS_UINT(LOAD(waiting->fields[11], k));
   photons.path = AS_UINT(LOAD(waiting->fields[12], k));
   photons.history = AS_UINT(LOAD(waiting->fields[13], k));
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  photons.point = AS_UINT(LOAD(waiting->fields[14], k));
+  photons.way = AS_UINT(LOAD(waiting->fields[15], k));
+#endif
   photons.alive = lanes_below(0, taken);
   return photons;
 }
@@ -118,10 +140,24 @@ FUNCTION Mask are_numbers(const Photons* photons, const Vec3 arrived) {
   return fabs(sum.x + sum.y + sum.z) < INFINITY;
 }
 
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#define RUN_FIELDS ARRIVED_FIELDS
+
+// Notes where photons of the lattice arrived, for their neighbours: place and way of point i at [4 i].
+FUNCTION void note_landings(const Photons* photons, const Mask which, __global float* landings) {
+  FOR_LANES(lane, which & (photons->point != NO_POINT)) {
+    const float3 place = LANE3(photons->origin, lane);
+    vstore4((float4)(place, as_float(LANE(photons->way, uint, lane))), LANE(photons->point, uint, lane), landings);
+  }
+}
+#else
+#define RUN_FIELDS PHOTON_ROW
+#endif
+
 // Adds the lanes of `which` to the run's photons, of which there are `stored`. `fields`: the run's piece of the buffer.
-FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Mask which, const GridData grid,
-                            const uint run_length, const uint stored, __global float* fields) {
-  Float values[PHOTON_ROW];
+FUNCTION void store_photons(const Photons* photons, const SurfacePacket* surface, const Vec3 arrived, const Mask which,
+                            const GridData grid, const uint run_length, const uint stored, __global float* fields) {
+  Float values[RUN_FIELDS];
   values[PHOTON_X] = photons->origin.x;
   values[PHOTON_Y] = photons->origin.y;
   values[PHOTON_Z] = photons->origin.z;
@@ -129,14 +165,22 @@ FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Ma
   values[PHOTON_POWER + 0] = photons->power.x;
   values[PHOTON_POWER + 1] = photons->power.y;
   values[PHOTON_POWER + 2] = photons->power.z;
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  const Vec3 normal = select3(surface->entering, surface->geometric_normal, negate3(surface->geometric_normal));
+  values[ARRIVED_POINT] = AS_FLOAT(photons->point);
+  values[ARRIVED_NORMAL + 0] = normal.x;
+  values[ARRIVED_NORMAL + 1] = normal.y;
+  values[ARRIVED_NORMAL + 2] = normal.z;
+#else
   values[PHOTON_CELL] = AS_FLOAT(cells_of(grid, photons->origin));
+#endif
   __global float* to = fields + stored;
   const uint stride = photons_stride(run_length);
 #if PACKS_LANES
-  for (uint field = 0; field < PHOTON_ROW; ++field) pack_lanes(which, values[field], to + field * stride);
+  for (uint field = 0; field < RUN_FIELDS; ++field) pack_lanes(which, values[field], to + field * stride);
 #else
   FOR_LANES(lane, which) {
-    for (uint field = 0; field < PHOTON_ROW; ++field) to[field * stride] = LANE(values[field], float, lane);
+    for (uint field = 0; field < RUN_FIELDS; ++field) to[field * stride] = LANE(values[field], float, lane);
     ++to;
   }
 #endif
@@ -145,9 +189,10 @@ FUNCTION void store_photons(const Photons* photons, const Vec3 arrived, const Ma
 // Photons [first, last) of the sequences, a run. `fields`: its piece of the buffer; `counts`: its photons by bucket.
 BODY follow_run(const Scene scene, __global const LightData* light, __global const CasterData* casters,
                 const uint n_casters, const uint caster, __global const SequenceData* sequences, const float share,
-                const float upstream, const uint first, const uint last, const uint run_length, const uint max_depth,
-                const GridData grid, const uint buckets, __global float* restrict fields,
-                __global uint* restrict counts, __global PhotonRunData* restrict report) {
+                const float upstream, const LatticeData lattice, const uint first, const uint last, const uint run_length,
+                const uint max_depth, const GridData grid, const uint buckets, __global float* restrict landings,
+                __global float* restrict fields, __global uint* restrict counts,
+                __global PhotonRunData* restrict report) {
   Tally power[TALLIES];
   Uint ended[TALLIES];
   for (uint k = 0; k < TALLIES; ++k) {
@@ -172,8 +217,14 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     if (waiting[fuller].count >= WIDTH || next >= last) {
       photons = take_waiting(&waiting[fuller]);
     } else {
-      photons = emitted(scene, light, casters, n_casters, caster, sequences, share, upstream, next, &aim, &aimed);
+      photons = emitted(scene, light, casters, n_casters, caster, sequences, share, upstream, lattice, next, &aim, &aimed);
       photons.alive = lanes_below(next, last);
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+      // A way that no photon has, until it arrives.
+      FOR_LANES(lane, photons.alive & (photons.point != NO_POINT)) {
+        landings[4u * LANE(photons.point, uint, lane) + 3u] = as_float(0u);
+      }
+#endif
       add_power(&power[OUTCOME_ALIVE], photons.alive, photons.power);
       next += WIDTH;
     }
@@ -207,7 +258,10 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
         add_power(&power[k], here, photons.power);
         ended[k] += here ? (Uint)1 : (Uint)0;
         if (k == OUTCOME_STORED) {
-          store_photons(&photons, arrived, here, grid, run_length, stored, fields);
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+          note_landings(&photons, here, landings);
+#endif
+          store_photons(&photons, &surface, arrived, here, grid, run_length, stored, fields);
           stored += lanes_set(here);
           low = smaller3(select3(here, photons.origin, low), low);
           high = larger3(select3(here, photons.origin, high), high);
@@ -248,23 +302,26 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   report->high[1] = -least_of_lanes(-high.y);
   report->high[2] = -least_of_lanes(-high.z);
 
+#if CAUSTICS != CAUSTICS_FOOTPRINTS
   for (uint bucket = 0; bucket < buckets; ++bucket) counts[bucket] = 0;
   __global const float* cells = fields + PHOTON_CELL * photons_stride(run_length);
   for (uint i = 0; i < stored; ++i) ++counts[as_uint(cells[i]) >> grid.bucket_shift];
+#endif
 }
 
 // The first `count` photons of the sequences, `run_length` to a run. `share`: of the pair's power for each photon;
-// `upstream`: see emission.h.
+// `upstream`: see emission.h. landings: with footprints, room for each point of the lattice.
 KERNEL void photons(SCENE_PARAMETERS, __global const CasterData* casters, const uint n_casters,
                     __global const SequenceData* sequences, const uint light_index, const uint caster,
-                    const float share, const float upstream, const uint count, const uint run_length,
-                    const uint max_depth, const GridData grid, const uint buckets, __global float* photons,
-                    __global uint* counts, __global PhotonRunData* reports) {
+                    const float share, const float upstream, const LatticeData lattice, const uint count,
+                    const uint run_length, const uint max_depth, const GridData grid, const uint buckets,
+                    __global float* landings, __global float* photons, __global uint* counts,
+                    __global PhotonRunData* reports) {
   const uint run = get_global_id(0);
   const uint first = run * run_length;
   if (first >= count) return;
   const Scene scene = SCENE;
-  follow_run(scene, &scene.lights[light_index], casters, n_casters, caster, sequences, share, upstream, first,
-             min(first + run_length, count), run_length, max_depth, grid, buckets,
-             photons + photon_in_run(run_length, run, 0), counts + run * buckets, &reports[run]);
+  follow_run(scene, &scene.lights[light_index], casters, n_casters, caster, sequences, share, upstream, lattice, first,
+             min(first + run_length, count), run_length, max_depth, grid, buckets, landings,
+             photons + photon_in_run(run_length, run, 0, MAP_ROW), counts + run * buckets, &reports[run]);
 }

@@ -65,6 +65,7 @@ const char* name_of(PhotonEstimate estimate) {
     case PhotonEstimate::automatic: return "automatic";
     case PhotonEstimate::fixed_radius: return "radius";
     case PhotonEstimate::nearest: return "nearest";
+    case PhotonEstimate::footprints: return "footprints";
   }
   return "";
 }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr uint32_t photons_per_bucket = 8192;  // their rows fit a CPU's second cache, twice
 constexpr uint32_t most_log2_buckets = 10;     // each takes a line of a processor's cache while photons are dealt out
+constexpr uint64_t entries_of_footprint = 6;   // about
 constexpr size_t judged_places = 128;          // of a sample, around which the density is looked at,
 constexpr size_t judging_places = 1024;        // by so many of it
 
@@ -20,10 +21,9 @@ uint32_t log2_cells(const kernel::GridData& grid) { return grid.log2_x + grid.lo
 /// Stride of a bucket's sorted fields.
 uint32_t sorted_stride(uint32_t count) { return (count + 7) / 8 * 8; }
 
-/// Rows of the map's buffer; each is half a unit.
-constexpr uint32_t rows_per_unit = BUCKET_UNIT / PHOTON_ROW;
 constexpr uint32_t margin_rows = 16;           // a sorted bucket's strides, and reading beyond its end
-uint32_t whole_units(uint32_t rows) { return (rows + rows_per_unit - 1) / rows_per_unit * rows_per_unit; }
+/// Rows are whole or half units; an even number of them is whole in any case.
+uint32_t whole_units(uint32_t rows) { return (rows + 1) / 2 * 2; }
 
 }  // namespace
 
@@ -97,17 +97,22 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
   return {1.0f / cell, size[0], size[1], size[2], 0};
 }
 
+PhotonGrid::PhotonGrid(const KernelContext& context)
+    : context_(context), row_(context.features.footprints ? FOOTPRINT_ROW : PHOTON_ROW) {
+  map_.fields = context.features.footprints ? FOOTPRINT_FIELDS : PHOTON_FIELDS;
+}
+
 void PhotonGrid::reserve_rows(uint64_t rows) {
-  const size_t floats = (rows + margin_rows) * PHOTON_ROW;
+  const size_t floats = (rows + margin_rows) * row_;
   if (map_.photons.size() >= floats) return;
   const Buffer<float> larger = context_.device.allocate<float>(floats, "photon map");
-  if (used_rows_ > 0) context_.device.copy(map_.photons, 0, larger, 0, size_t{used_rows_} * PHOTON_ROW);
+  if (used_rows_ > 0) context_.device.copy(map_.photons, 0, larger, 0, size_t{used_rows_} * row_);
   map_.photons = larger;
 }
 
 PhotonGrid::Room PhotonGrid::new_room(uint32_t rows) {
   const Room room{used_rows_, whole_units(rows)};
-  if (map_.photons.size() < size_t{used_rows_ + room.size + margin_rows} * PHOTON_ROW)
+  if (map_.photons.size() < size_t{used_rows_ + room.size + margin_rows} * row_)
     reserve_rows(uint64_t{used_rows_} + room.size + used_rows_ / 4);
   used_rows_ += room.size;
   return room;
@@ -116,12 +121,16 @@ PhotonGrid::Room PhotonGrid::new_room(uint32_t rows) {
 void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass, double share) {
   const PhotonSettings& settings = context_.scene.photons;
   if (pass == 0 || !settings.progressive) {
-    const double wanted = settings.progressive ? settings.nearest : settings.nearest * share;
-    first_radius_ = settings.estimate == PhotonEstimate::automatic
+    // Footprints are as large as photons of one pass are apart.
+    const bool by_pass = settings.progressive || context_.features.footprints;
+    const double wanted = by_pass ? settings.nearest : settings.nearest * share;
+    first_radius_ = settings.estimate != PhotonEstimate::fixed_radius
                         ? static_cast<double>(automatic_radius(sample, expected, wanted))
                         : settings.radius;
   }
   map_.radius = static_cast<float>(settings.progressive ? first_radius_ * std::sqrt(progressive_area(pass)) : first_radius_);
+  // A footprint is listed in each cell that it reaches into.
+  if (context_.features.footprints) expected *= entries_of_footprint;
   map_.grid = choose_grid(sample, expected, map_.radius);
   const uint32_t cells = log2_cells(map_.grid);
   const uint32_t log2_buckets =
@@ -148,7 +157,7 @@ void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, uin
   for (uint32_t n : rows) room_.push_back(new_room(n));
 }
 
-void PhotonGrid::add(const PhotonRuns& runs) {
+void PhotonGrid::make_room(const PhotonRuns& runs) {
   Device& device = context_.device;
   const uint32_t n_runs = static_cast<uint32_t>(runs.reports.size());
   // Bucket by bucket, and in it run by run, so that photons keep their order.
@@ -160,8 +169,8 @@ void PhotonGrid::add(const PhotonRuns& runs) {
     const uint32_t needed = map_.bucket_counts[bucket] + margin_rows;
     if (Room& room = room_[bucket]; room.size < needed) {
       const Room larger = new_room(2 * needed);
-      device.copy(map_.photons, size_t{room.start} * PHOTON_ROW, map_.photons, size_t{larger.start} * PHOTON_ROW,
-                  size_t{before} * PHOTON_ROW);
+      device.copy(map_.photons, size_t{room.start} * row_, map_.photons, size_t{larger.start} * row_,
+                  size_t{before} * row_);
       room = larger;
     }
     rows[bucket] = room_[bucket].start + before;
@@ -173,10 +182,39 @@ void PhotonGrid::add(const PhotonRuns& runs) {
     }
   if (places_.size() < places.size()) places_ = device.allocate<uint32_t>(places.size(), "photon map");
   device.write(places_, places);
-  cl::Kernel kernel = context_.kernels.get("sort_into_buckets");
-  set_arguments(kernel, 0, n_runs, runs.length, buckets(), map_.grid.bucket_shift, runs.on_device, runs.photons, places_,
-                map_.photons);
-  device.launch_singly("sort", kernel, n_runs);
+}
+
+kernel::FootprintLimits PhotonGrid::footprint_limits() const {
+  const kernel::CameraData& camera = context_.data.camera;
+  kernel::FootprintLimits limits{};
+  std::copy(std::begin(camera.eye), std::end(camera.eye), limits.eye);
+  limits.sharpness = camera.step_x / std::sqrt(static_cast<float>(context_.scene.render.samples));
+  // Two sides reach to the farthest corner of a tent.
+  limits.largest = map_.radius / 2.0f;
+  return limits;
+}
+
+void PhotonGrid::add(PhotonRuns& runs) {
+  Device& device = context_.device;
+  const uint32_t n_runs = static_cast<uint32_t>(runs.reports.size());
+  if (context_.features.footprints) {
+    const kernel::FootprintLimits limits = footprint_limits();
+    cl::Kernel count = context_.kernels.get("count_footprints"), place = context_.kernels.get("place_footprints");
+    set_arguments(count, 0, n_runs, runs.length, runs.lattice, limits, map_.grid, buckets(), runs.photons, runs.landings,
+                  runs.counts, runs.on_device);
+    device.launch_singly("footprints", count, n_runs);
+    runs.reports = device.read(runs.on_device, 0, n_runs);
+    make_room(runs);
+    set_arguments(place, 0, n_runs, runs.length, runs.lattice, limits, map_.grid, buckets(), runs.photons, runs.landings,
+                  places_, runs.on_device, map_.photons);
+    device.launch_singly("footprints", place, n_runs);
+  } else {
+    make_room(runs);
+    cl::Kernel kernel = context_.kernels.get("sort_into_buckets");
+    set_arguments(kernel, 0, n_runs, runs.length, buckets(), map_.grid.bucket_shift, runs.on_device, runs.photons, places_,
+                  map_.photons);
+    device.launch_singly("sort", kernel, n_runs);
+  }
 
   for (const kernel::PhotonRunData& run : runs.reports)
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -192,7 +230,7 @@ void PhotonGrid::finish() {
   std::vector<kernel::BucketData> buckets;
   std::vector<uint32_t> by_size;
   for (uint32_t bucket = 0; bucket < counts.size(); ++bucket) {
-    buckets.push_back({room_[bucket].start / rows_per_unit, sorted_stride(counts[bucket])});
+    buckets.push_back({room_[bucket].start * row_ / BUCKET_UNIT, sorted_stride(counts[bucket])});
     by_size.push_back(bucket);
   }
 
@@ -214,7 +252,7 @@ void PhotonGrid::finish() {
     first_task.push_back(static_cast<uint32_t>(tasks.size()));
     first_scratch.push_back(scratch);
     tasks.insert(tasks.end(), own.begin(), own.end());
-    if (!own.empty()) scratch += (PHOTON_FIELDS * sorted_stride(counts[own.front()]) + BUCKET_UNIT - 1) / BUCKET_UNIT + 4;
+    if (!own.empty()) scratch += (map_.fields * sorted_stride(counts[own.front()]) + BUCKET_UNIT - 1) / BUCKET_UNIT + 4;
   }
   first_task.push_back(static_cast<uint32_t>(tasks.size()));
 

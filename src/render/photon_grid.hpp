@@ -32,7 +32,7 @@ uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p);
 /// Sorts the photons of a pass into a grid, launch by launch; keeps its buffers.
 class PhotonGrid {
  public:
-  explicit PhotonGrid(const KernelContext& context) : context_(context) {}
+  explicit PhotonGrid(const KernelContext& context);
 
   /// Chooses radius and grid from `sample`, places of some photons [m], for pass number `pass` of the picture, from 0,
   /// which stores about `expected`. It has the fraction `share` of all photons of the picture: an automatic radius takes in
@@ -43,8 +43,8 @@ class PhotonGrid {
   /// Buckets of cells, by which the photons of a launch are to be counted.
   uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }
 
-  /// Takes in the photons of a launch.
-  void add(const PhotonRuns& runs);
+  /// Takes in the photons of a launch; with footprints, of all launches of a pair of light and caster.
+  void add(PhotonRuns& runs);
   /// Sorts what was taken in.
   void finish();
   /// Valid from finish until the next start.
@@ -59,7 +59,12 @@ class PhotonGrid {
   void reserve_rows(uint64_t rows);
   Room new_room(uint32_t rows);
 
+  kernel::FootprintLimits footprint_limits() const;
+  /// Room for what `runs` adds to each bucket, by their counts; leaves in places_ where each of them goes on.
+  void make_room(const PhotonRuns& runs);
+
   KernelContext context_;
+  const uint32_t row_;          ///< floats of an entry before it is sorted
   PhotonMap map_;
   double first_radius_ = 0.0;   ///< [m], before it shrinks
   std::vector<Room> room_;      ///< by bucket

@@ -98,8 +98,12 @@ struct PhotonPass::State {
     kernel = context.kernels.get("photons");
     // A GPU wants many work-items.
     runs.length = device.info().is_cpu ? 1024 : 64;
-    most_runs = (std::max(context.launches.photons, pilot_size(largest)) + runs.length - 1) / runs.length;
-    runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0), "photons in flight");
+    runs.row = context.features.footprints ? FOOTPRINT_ROW : PHOTON_ROW;
+    // Footprints want all photons of a pair at once.
+    const uint64_t most_at_once = context.features.footprints ? largest : context.launches.photons;
+    most_runs = static_cast<uint32_t>((std::max<uint64_t>(most_at_once, pilot_size(largest)) + runs.length - 1) / runs.length);
+    runs.landings = device.allocate<float>(context.features.footprints ? 4 * largest : 1, "photons in flight");
+    runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0, runs.row), "photons in flight");
     runs.on_device = device.allocate<kernel::PhotonRunData>(most_runs, "photons in flight");
   }
 
@@ -108,10 +112,28 @@ struct PhotonPass::State {
     return static_cast<uint64_t>(std::llround(pair.flux / flux * static_cast<double>(count)));
   }
 
+  /// The lattice of about `n` photons of a pair in a pass, none where it takes more than two dimensions or so few photons
+  /// that it would be none.
+  kernel::LatticeData lattice_of(uint32_t number, uint64_t pass, uint64_t n) const {
+    if (!context.features.footprints || n < 64 || context.scene.photons.sampling == Sampling::independent ||
+        context.data.lights[pairs[number].light].kind > LIGHT_DIRECTIONAL)
+      return {};
+    // Directions are at radius sqrt(u) and angle 2 pi v: four rows to a column, and cells are about as wide as long.
+    const auto log2_rows = static_cast<uint32_t>(std::lround(0.5 * std::log2(4.0 * static_cast<double>(n))));
+    // From pass to pass the lattice moves evenly.
+    const uint64_t key = mix_bits(mix_bits(context.scene.render.seed, number), 0x1a771ce);
+    const std::array<float, 2> step = r2_point(pass);
+    const auto shift = [&](uint32_t axis) {
+      const float start = static_cast<float>(mix_bits(key, axis) >> 40) * 0x1p-24f;
+      return start + step[axis] - std::floor(start + step[axis]);
+    };
+    return {0, static_cast<uint32_t>(n >> log2_rows), log2_rows, shift(0), shift(1)};
+  }
+
   /// Shoots photons [first, first + count) of pair `number`, each with the fraction `power` of its power, and leaves
-  /// them in `runs`, in cells of `cells`.
+  /// them in `runs`, in cells of `cells`. They are on `lattice` if it has columns.
   void shoot(uint32_t number, uint32_t replicate, uint64_t first, uint32_t count, double power,
-             const kernel::GridData& cells, uint32_t buckets) {
+             const kernel::GridData& cells, uint32_t buckets, const kernel::LatticeData& lattice) {
     Device& device = context.device;
     const Pair& pair = pairs[number];
     const kernel::LightData& light = context.data.lights[pair.light];
@@ -124,9 +146,9 @@ struct PhotonPass::State {
     const unsigned next = context.device_scene.set_arguments(kernel);
     set_arguments(kernel, next, light.kind == LIGHT_DIRECTIONAL ? casters_of_directional : context.device_scene.casters,
                   static_cast<uint32_t>(context.data.casters.size()), sequences, pair.light, pair.caster,
-                  static_cast<float>(power), pair.upstream, count, runs.length,
-                  static_cast<uint32_t>(context.scene.photons.max_depth), cells, buckets, runs.photons, runs.counts,
-                  runs.on_device);
+                  static_cast<float>(power), pair.upstream, lattice, count, runs.length,
+                  static_cast<uint32_t>(context.scene.photons.max_depth), cells, buckets, runs.landings, runs.photons,
+                  runs.counts, runs.on_device);
     device.launch_singly("photons", kernel, n_runs);
     runs.reports = device.read(runs.on_device, 0, n_runs);
   }
@@ -139,7 +161,7 @@ struct PhotonPass::State {
     for (uint32_t p = 0; p < pairs.size(); ++p) {
       const uint64_t n = std::max<uint64_t>(1, share(pairs[p], count));
       const uint32_t shot = static_cast<uint32_t>(std::min(n, pilot));
-      shoot(p, replicate, 0, shot, 1.0 / static_cast<double>(n), {}, 1);
+      shoot(p, replicate, 0, shot, 1.0 / static_cast<double>(n), {}, 1, {});
       places.emplace_back();
       for (const cl_float8& photon : photons_of_runs()) places.back().push_back({photon.s[0], photon.s[1], photon.s[2]});
       // Their order hangs on the device's width, which the radius must not: a random one, by where they are.
@@ -166,13 +188,13 @@ struct PhotonPass::State {
   /// What the last launch stored.
   std::vector<cl_float8> photons_of_runs() const {
     const uint32_t n_runs = static_cast<uint32_t>(runs.reports.size());
-    const std::vector<float> fields = context.device.read(runs.photons, 0, kernel::photon_in_run(runs.length, n_runs, 0));
+    const std::vector<float> fields = context.device.read(runs.photons, 0, kernel::photon_in_run(runs.length, n_runs, 0, runs.row));
     std::vector<cl_float8> photons;
     for (uint32_t run = 0; run < n_runs; ++run)
       for (uint32_t i = 0; i < runs.reports[run].photons[OUTCOME_STORED]; ++i) {
         cl_float8 photon{};
         for (uint32_t field = 0; field < PHOTON_FIELDS; ++field)
-          photon.s[field] = fields[kernel::photon_in_run(runs.length, run, field) + i];
+          photon.s[field] = fields[kernel::photon_in_run(runs.length, run, field, runs.row) + i];
         photons.push_back(photon);
       }
     return photons;
@@ -204,7 +226,8 @@ PhotonPass::PhotonPass(const KernelContext& context, uint64_t largest_pass)
     : state_(new State(context, largest_pass)) {}
 PhotonPass::~PhotonPass() = default;
 
-uint64_t PhotonPass::capacity(const Device& device) {
+uint64_t PhotonPass::capacity(const Device& device, const Features& features) {
+  if (features.footprints) return std::min<uint64_t>(device.info().max_allocation >> 8, 1u << 20);
   // A photon takes a row of one array, with some to spare; half of the memory may go to it. Offsets in it fit 32 bits.
   constexpr double row = largest_row_share * PHOTON_ROW * sizeof(float);
   const double bytes = static_cast<double>(std::min(device.info().max_allocation, device.info().memory / 2));
@@ -222,12 +245,15 @@ void PhotonPass::run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_
   std::vector<cl_float8> photons;  // for the tree
   uint64_t emitted = 0;
   for (uint32_t p = 0; p < s.pairs.size(); ++p) {
-    const uint64_t n = std::max<uint64_t>(1, s.share(s.pairs[p], count));
+    uint64_t n = std::max<uint64_t>(1, s.share(s.pairs[p], count));
     const uint64_t n_before = before == 0 ? 0 : s.share(s.pairs[p], before);
+    s.runs.lattice = s.lattice_of(p, pass, n);
+    if (s.runs.lattice.columns > 0) n = uint64_t{s.runs.lattice.columns} << s.runs.lattice.log2_rows;
+    const uint64_t most_in_launch = s.context.features.footprints ? n : s.context.launches.photons;
     for (uint64_t first = 0; first < n;) {
-      const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(s.context.launches.photons, n - first));
+      const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(most_in_launch, n - first));
       s.shoot(p, replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n), s.grid.grid(),
-              nearest ? 1 : s.grid.buckets());
+              nearest ? 1 : s.grid.buckets(), s.runs.lattice);
       for (const kernel::PhotonRunData& run : s.runs.reports) s.book(run);
       if (nearest) {
         const std::vector<cl_float8> stored = s.photons_of_runs();
@@ -268,7 +294,7 @@ std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map) {
     const std::vector<kernel::BucketData> buckets = device.read(map.buckets, 0, map.bucket_counts.size());
     for (size_t b = 0; b < buckets.size(); ++b) {
       const std::vector<float> fields =
-          device.read(map.photons, size_t{buckets[b].start} * BUCKET_UNIT, size_t{PHOTON_FIELDS} * buckets[b].stride);
+          device.read(map.photons, size_t{buckets[b].start} * BUCKET_UNIT, size_t{map.fields} * buckets[b].stride);
       append(fields.data(), buckets[b].stride, map.bucket_counts[b]);
     }
   }

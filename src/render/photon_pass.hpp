@@ -29,6 +29,9 @@ struct PhotonBalance {
 /// What a launch of photons leaves, run by run (kernels/photon_map.h).
 struct PhotonRuns {
   uint32_t length = 0;                      ///< of a run
+  uint32_t row = PHOTON_ROW;                ///< floats of a photon; FOOTPRINT_ROW with footprints, and then:
+  kernel::LatticeData lattice{};
+  Buffer<float> landings;                   ///< of the lattice's points
   Buffer<float> photons;
   Buffer<uint32_t> counts;                  ///< photons of each run in each bucket of the grid
   Buffer<kernel::PhotonRunData> on_device;
@@ -38,9 +41,10 @@ struct PhotonRuns {
 /// The photons of a pass, sorted into a grid or, for the k nearest, into a tree (kernels/photon_map.h).
 struct PhotonMap {
   uint32_t count = 0;
-  float radius = 0.0f;                      ///< of the estimate [m]; for the k nearest, the greatest
+  float radius = 0.0f;                      ///< of the estimate [m]; for the k nearest, the greatest; how far footprints reach
   std::array<float, 4> low{}, high{};       ///< box around all photons [m]
   // The grid.
+  uint32_t fields = PHOTON_FIELDS;          ///< of an entry; FOOTPRINT_FIELDS with footprints
   kernel::GridData grid{};
   Buffer<float> photons;
   Buffer<kernel::BucketData> buckets;
@@ -64,8 +68,8 @@ class PhotonPass {
   PhotonPass(const KernelContext& context, uint64_t largest_pass);
   ~PhotonPass();
 
-  /// Photons that a single pass can hold on this device.
-  static uint64_t capacity(const Device& device);
+  /// Photons that a single pass can hold on this device. With footprints, all of a pass wait until their neighbours are known.
+  static uint64_t capacity(const Device& device, const Features& features);
 
   /// Emits `count` photons of `replicate`, of which `before` have been emitted already, as pass number `pass` of the
   /// picture, from 0 and one after the other: a progressive radius goes by it. Reports the fraction done.

@@ -102,8 +102,8 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     if (wants(view) && scene.render.samples < 2)
       throw Error({std::string("--view ") + view_name(view)}, "one sample a pixel has no scatter",
                   "take at least --samples 2; 8 and their multiples tell the error best");
-  if (wants(View::bias) && features.nearest_photons)
-    throw Error({"--view bias"}, "the bias of the k nearest photons is not known",
+  if (wants(View::bias) && (features.nearest_photons || features.footprints))
+    throw Error({"--view bias"}, printed("the bias of %s is not known", features.footprints ? "footprints" : "the k nearest photons"),
                 "take photons.estimate \"automatic\" or \"radius\"");
   const SceneData data = scene_data(scene, features);
   Tree tree;
@@ -120,7 +120,8 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   const uint64_t photons = features.caustics ? scene.photons.count : 0;
   // A pass holds no more photons than the device has room for.
   uint64_t passes = static_cast<uint64_t>(scene.render.passes);
-  if (photons > 0) passes = std::max(passes, (photons + PhotonPass::capacity(device) - 1) / PhotonPass::capacity(device));
+  const uint64_t capacity = PhotonPass::capacity(device, features);
+  if (photons > 0) passes = std::max(passes, (photons + capacity - 1) / capacity);
   // Each replicate needs a pass.
   if (wants(View::error) || wants(View::bias)) passes = std::max<uint64_t>(passes, Film::max_replicates);
   passes = std::min<uint64_t>(passes, samples);

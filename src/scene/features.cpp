@@ -107,6 +107,7 @@ Features scene_features(const Scene& scene) {
   for (const Light& light : scene.lights) f.light_kinds |= 1u << light.emitter.index();
   f.lights = scene.render.lights && !scene.lights.empty();
   f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;
+  f.footprints = f.caustics && scene.photons.estimate == PhotonEstimate::footprints;
   f.nearest_photons = f.caustics && scene.photons.estimate == PhotonEstimate::nearest;
   if (f.dielectric) f.constant_reflectance = scene.render.constant_reflectance;
   f.max_depth = static_cast<unsigned>(scene.render.max_depth);
@@ -118,7 +119,8 @@ std::string Features::build_options() const {
   std::string options = on("HAS_MESH", mesh) + on("HAS_DIELECTRIC", dielectric) + on("HAS_MEDIA_STACK", media_stack) +
                         on("HAS_CONTACTS", contacts) + on("HAS_ABSORPTION", absorption) + on("HAS_TEXTURES", textures) +
                         on("HAS_HIGHLIGHTS", highlights) + on("HAS_DIRECT_LIGHT", lights) +
-                        " -DCAUSTICS=" + (nearest_photons ? "CAUSTICS_NEAREST" : caustics ? "CAUSTICS_WITHIN" : "CAUSTICS_NONE") +
+                        " -DCAUSTICS=" +
+                        (nearest_photons ? "CAUSTICS_NEAREST" : footprints ? "CAUSTICS_FOOTPRINTS" : caustics ? "CAUSTICS_WITHIN" : "CAUSTICS_NONE") +
                         " -DCAMERA_STACK=" + std::to_string(std::max(32u, std::bit_ceil(max_depth + 1))) +
                         " -DLIGHT_KINDS=" + std::to_string(light_kinds);
   if (constant_reflectance) options += printed(" -DCONSTANT_REFLECTANCE=%.9ef", *constant_reflectance);
@@ -140,6 +142,7 @@ std::string Features::names() const {
   add(constant_reflectance.has_value(), "constant reflectance");
   add(lights, "direct light");
   add(caustics, "caustics");
+  add(footprints, "footprints");
   add(nearest_photons, "nearest photons");
   return text.empty() ? "none" : text;
 }
@@ -148,6 +151,7 @@ std::vector<std::string> stages_for(const Features& f) {
   std::vector<std::string> stages = {"camera"};
   if (f.caustics) stages.push_back("photons");
   if (f.caustics && !f.nearest_photons) stages.push_back("photon_sort");
+  if (f.footprints) stages.push_back("photon_footprints");
   return stages;
 }
 

@@ -20,6 +20,7 @@ struct Features {
   bool highlights = false;      ///< some surface has a Phong term
   bool lights = false;          ///< direct light is computed
   bool caustics = false;        ///< photons are traced and gathered
+  bool footprints = false;      ///< photons in the map have footprints
   bool nearest_photons = false; ///< the k nearest are gathered, not those within a fixed radius
   unsigned max_depth = 1;       ///< of camera rays
   unsigned light_kinds = 0;     ///< bit set, 1 << LIGHT_... of kernels/types.h

@@ -46,7 +46,8 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
   table.choice("estimate", settings.estimate,
                {{"automatic", PhotonEstimate::automatic},
                 {"radius", PhotonEstimate::fixed_radius},
-                {"nearest", PhotonEstimate::nearest}});
+                {"nearest", PhotonEstimate::nearest},
+                {"footprints", PhotonEstimate::footprints}});
   table.length("radius", settings.radius, positive_length, context.metres_per_unit);
   table.integer("nearest", settings.nearest, 1, 1 << 20);
   if (settings.estimate == PhotonEstimate::nearest && settings.nearest > most_nearest_photons)
@@ -57,6 +58,9 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
   if (settings.progressive && settings.estimate == PhotonEstimate::nearest)
     table.fail("progressive", "needs a radius that can shrink, which the k nearest photons do not have",
                "use photons.estimate = \"automatic\" or \"radius\" with it");
+  if (settings.progressive && settings.estimate == PhotonEstimate::footprints)
+    table.fail("progressive", "needs a radius that can shrink, which footprints do not have",
+               "leave it out: footprints shrink as photons.count grows");
   table.integer("max_depth", settings.max_depth, 1, deepest_path);
   return settings;
 }

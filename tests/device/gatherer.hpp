@@ -47,7 +47,10 @@ class Gatherer {
     // As a pass does: room is made for what a few photons promise.
     grid.start(std::span(places).first(std::min<size_t>(places.size(), 1000)), places.size(), 0, 1.0);
     for (size_t first = 0; first < photons.size(); first += 5 * run_length)
-      grid.add(runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid));
+  {
+        PhotonRuns runs = runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid);
+        grid.add(runs);
+      }
     grid.finish();
     return run(within_, "within", grid.map(), queries);
   }
@@ -81,7 +84,7 @@ class Gatherer {
     PhotonRuns runs;
     runs.length = run_length + 3;
     const uint32_t n_runs = static_cast<uint32_t>((photons.size() + run_length - 1) / run_length);
-    std::vector<float> fields(kernel::photon_in_run(runs.length, n_runs, 0));
+    std::vector<float> fields(kernel::photon_in_run(runs.length, n_runs, 0, PHOTON_ROW));
     std::vector<uint32_t> counts(size_t{n_runs} * grid.buckets());
     for (uint32_t run = 0; run < n_runs; ++run) {
       const size_t first = run * run_length, count = std::min(run_length, photons.size() - first);
@@ -94,7 +97,7 @@ class Gatherer {
         const uint32_t cell = cell_of(grid.grid(), {photon.s[0], photon.s[1], photon.s[2]});
         ++counts[run * grid.buckets() + (cell >> grid.grid().bucket_shift)];
         for (uint32_t field = 0; field < PHOTON_ROW; ++field)
-          fields[kernel::photon_in_run(runs.length, run, field) + i] =
+          fields[kernel::photon_in_run(runs.length, run, field, PHOTON_ROW) + i] =
               field == PHOTON_CELL ? std::bit_cast<float>(cell) : photon.s[field];
         for (int axis = 0; axis < 3; ++axis) {
           report.low[axis] = std::min(report.low[axis], photon.s[axis]);

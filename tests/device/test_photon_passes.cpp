@@ -52,5 +52,5 @@ TEST_CASE("a pass that stores all of its photons takes no more memory for each t
   REQUIRE(run.map().count == count);
   const double bytes = static_cast<double>(run.map().photons.size() * sizeof(float)) / count;
   const double room = static_cast<double>(std::min(device.info().max_allocation, device.info().memory / 2));
-  CHECK(bytes * static_cast<double>(PhotonPass::capacity(device)) <= room);
+  CHECK(bytes * static_cast<double>(PhotonPass::capacity(device, Features{})) <= room);
 }

@@ -1,0 +1,137 @@
+// Footprints of photons: each photon of a lattice of emission stands for a cell of it, which reflection and refraction carry
+// to a parallelogram on the receiver. There its power is spread, by a tent over it and its neighbours, which together are 1
+// everywhere. Photon differentials (Igehy, Tracing Ray Differentials, 1999; Schjoth et al., Photon Differentials, 2007) tell
+// the parallelogram from derivatives of each surface; here its sides are the differences to the neighbours that went the
+// same way, which asks nothing of the surfaces, and sees their facets as they are.
+#ifndef VITRUM_FOOTPRINT_H
+#define VITRUM_FOOTPRINT_H
+
+#include "lights.h"
+#include "photon_map.h"
+
+FUNCTION void lattice_point(const LatticeData lattice, const Uint point, Float u[2]) {
+  const Uint column = point >> lattice.log2_rows;
+  const Uint row = point & ((1u << lattice.log2_rows) - 1u);
+  const Float below_1 = 0.99999994f;
+  u[0] = smaller((TO_FLOAT(AS_INT(column)) + lattice.shift_u) / (float)lattice.columns, below_1);
+  u[1] = smaller((TO_FLOAT(AS_INT(row)) + lattice.shift_v) / (float)(1u << lattice.log2_rows), below_1);
+}
+
+// The parallelogram's sides, and into how many parts each is cut.
+typedef struct {
+  Vec3 side_u, side_v;         // [m], in the receiver's plane
+  Vec3 across_u, across_v;     // [1/m]: of a part, what is from -1 to 1 across its tent
+  Float area;                  // [m2]
+  Uint parts_u, parts_v;
+  Uint level;                  // of the grid
+} Footprint;
+
+#define FOOTPRINT_MOST_PARTS 8.0f
+
+// Into how many parts no larger than `largest` a side of this length is cut.
+FUNCTION Float parts_of(const Float side, const float largest) {
+  return larger(ceil(side / largest - 0.001f), (Float)1.0f);
+}
+
+// From a photon's place towards its neighbour ahead, or from that behind to it. Where both went the same way and lie about
+// as far, it is their mean; else the nearer's, so that footprints do not bridge what a facet's edge has torn apart.
+FUNCTION Vec3 difference(__global const float* landings, const Vec3 place, const Uint way, const Uint ahead,
+                         const Mask is_ahead, const Uint behind, const Mask is_behind, Mask* found) {
+  const Uint to = 4u * (is_ahead ? ahead : (Uint)0);
+  const Uint from = 4u * (is_behind ? behind : (Uint)0);
+  const Vec3 forward = subtract3(GATHER3(landings, to), place);
+  const Vec3 backward = subtract3(place, GATHER3(landings, from));
+  const Mask has_ahead = is_ahead & (AS_UINT(GATHER(Float, landings, to + 3u)) == way);
+  const Mask has_behind = is_behind & (AS_UINT(GATHER(Float, landings, from + 3u)) == way);
+  const Float forward2 = dot3(forward, forward);
+  const Float backward2 = dot3(backward, backward);
+  const Mask alike = has_ahead & has_behind & (forward2 < 4.0f * backward2) & (backward2 < 4.0f * forward2);
+  const Mask goes_ahead = has_ahead & ((has_behind == 0) | (forward2 < backward2));
+  *found &= has_ahead | has_behind;
+  return select3(alike, scale3(0.5f, add3(forward, backward)), select3(goes_ahead, forward, backward));
+}
+
+// Of photons that arrived at `place` on a surface with this normal. Those without a lattice or alone on their way spread
+// over a square.
+FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float* landings, const FootprintLimits limits,
+                                const Uint point, const Vec3 place, const Vec3 normal) {
+  const Uint row_mask = (1u << lattice.log2_rows) - 1u;
+  const Uint column = point >> lattice.log2_rows;
+  const Uint row = point & row_mask;
+  Mask found = lattice.columns > 0 ? point != NO_POINT : (Mask)0;
+  const Mask on_lattice = found;
+  const Uint own = on_lattice ? point : (Uint)0;
+  Vec3 u = make_vec3(0.0f, 0.0f, 0.0f);
+  Vec3 v = u;
+  if (ANY(on_lattice)) {
+    const Uint way = AS_UINT(GATHER(Float, landings, 4u * own + 3u));
+    u = difference(landings, place, way, own + (1u << lattice.log2_rows), on_lattice & (column + 1u < lattice.columns),
+                   own - (1u << lattice.log2_rows), on_lattice & (column > 0u), &found);
+    // Rows go around.
+    const Uint start = own - (own & row_mask);
+    v = difference(landings, place, way, start | ((row + 1u) & row_mask), on_lattice, start | ((row - 1u) & row_mask),
+                   on_lattice, &found);
+  }
+
+  // The sides as a matrix (a b; c d) in the receiver's plane, its columns u and v.
+  const Frame frame = frame_around(normal);
+  const Float off_u = dot3(u, normal);
+  const Float off_v = dot3(v, normal);
+  found &= (off_u * off_u <= 0.25f * dot3(u, u)) & (off_v * off_v <= 0.25f * dot3(v, v));
+  Float a = found ? dot3(u, frame.x) : limits.largest;
+  Float b = found ? dot3(v, frame.x) : 0.0f;
+  Float c = found ? dot3(u, frame.y) : 0.0f;
+  Float d = found ? dot3(v, frame.y) : limits.largest;
+
+  // Where light is focussed, a footprint shrinks to nothing, which a pixel's samples would miss or catch by chance. So its
+  // axes (singular values q + r and q - r) are at least what lies between samples. What goes beyond the largest side by more
+  // than the parts' number is cut off.
+  const Float x = place.x - limits.eye[0];
+  const Float y = place.y - limits.eye[1];
+  const Float z = place.z - limits.eye[2];
+  const Float sample = limits.sharpness * sqrt(fma(x, x, fma(y, y, z * z)));
+  const Float least = larger(smaller(sample, (Float)limits.largest), (Float)(1e-3f * limits.largest));
+  const Float most = FOOTPRINT_MOST_PARTS * LEVEL_RATIO * limits.largest;
+  const Float half_sum = 0.5f * (a + d);
+  const Float half_difference = 0.5f * (a - d);
+  const Float half_turn = 0.5f * (c - b);
+  const Float half_shear = 0.5f * (c + b);
+  const Float q = sqrt(fma(half_sum, half_sum, half_turn * half_turn));
+  const Float r = sqrt(fma(half_difference, half_difference, half_shear * half_shear));
+  const Float long_axis = larger(smaller(q + r, most), least);
+  const Float short_axis = larger(smaller(fabs(q - r), most), least);
+  const Float signed_short = q < r ? -short_axis : short_axis;
+  const Float new_q = 0.5f * (long_axis + signed_short);
+  const Float new_r = 0.5f * (long_axis - signed_short);
+  const Float grow_q = q > 0.0f ? new_q / q : 0.0f;
+  const Float grow_r = r > 0.0f ? new_r / r : 0.0f;
+  const Float sum = q > 0.0f ? grow_q * half_sum : new_q;
+  const Float turn = grow_q * half_turn;
+  const Float stretch = r > 0.0f ? grow_r * half_difference : new_r;
+  const Float shear = grow_r * half_shear;
+  a = sum + stretch;
+  d = sum - stretch;
+  b = shear - turn;
+  c = shear + turn;
+
+  Footprint f;
+  f.side_u = add3(scale3(a, frame.x), scale3(c, frame.y));
+  f.side_v = add3(scale3(b, frame.x), scale3(d, frame.y));
+  const Float determinant = long_axis * signed_short;
+  f.area = long_axis * short_axis;
+  const Float length_u = sqrt(fma(a, a, c * c));
+  const Float length_v = sqrt(fma(b, b, d * d));
+  Float parts_u = parts_of(length_u, limits.largest);
+  Float parts_v = parts_of(length_v, limits.largest);
+  const Mask is_large = parts_u * parts_v > FOOTPRINT_MOST_PARTS;
+  parts_u = is_large ? parts_of(length_u, LEVEL_RATIO * limits.largest) : parts_u;
+  parts_v = is_large ? parts_of(length_v, LEVEL_RATIO * limits.largest) : parts_v;
+  f.level = is_large ? (Uint)1 : (Uint)0;
+  f.across_u = scale3(parts_u / determinant, add3(scale3(d, frame.x), scale3(-b, frame.y)));
+  f.across_v = scale3(parts_v / determinant, add3(scale3(-c, frame.x), scale3(a, frame.y)));
+  f.parts_u = AS_UINT(TO_INT(parts_u));
+  f.parts_v = AS_UINT(TO_INT(parts_v));
+  return f;
+}
+
+#endif

@@ -1,0 +1,53 @@
+// Photons whose footprints cover a place. Included by gather.h. Each cell of the grid lists all that reach into it, so one
+// cell of small and one of large footprints are all there is to look at.
+#ifndef VITRUM_GATHER_FOOTPRINTS_H
+#define VITRUM_GATHER_FOOTPRINTS_H
+
+// Adds the entries of a level that are listed in the cell about p.
+FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sums* sums) {
+  const GridData grid = map->grid;
+  const float max_off_plane = FOOTPRINT_OFF_PLANE * map->radius;
+  const float inverse_cell = level ? grid.inverse_cell / LEVEL_RATIO : grid.inverse_cell;
+  const uint cell = cell_of_level(grid, level, cell_coordinate(p.x, inverse_cell), cell_coordinate(p.y, inverse_cell),
+                                  cell_coordinate(p.z, inverse_cell));
+  const uint bucket = cell >> grid.bucket_shift;
+  const uint first = map->first_of_cell[bucket + cell];
+  const uint last = map->first_of_cell[bucket + cell + 1];
+  const BucketData data = map->buckets[bucket];
+  const uint stride = data.stride;
+  __global const float* entries = map->photons + (ulong)data.start * BUCKET_UNIT;
+  for (uint i = first; i < last; i += 8) {
+    const float8 dx = vload8(0, entries + PHOTON_X * stride + i) - p.x;
+    const float8 dy = vload8(0, entries + PHOTON_Y * stride + i) - p.y;
+    const float8 dz = vload8(0, entries + PHOTON_Z * stride + i) - p.z;
+    __global const float* u = entries + FOOTPRINT_U * stride + i;
+    __global const float* v = entries + FOOTPRINT_V * stride + i;
+    const float8 tent_u = 1.0f - fabs(dx * vload8(0, u) + dy * vload8(0, u + stride) + dz * vload8(0, u + 2 * stride));
+    const float8 tent_v = 1.0f - fabs(dx * vload8(0, v) + dy * vload8(0, v + stride) + dz * vload8(0, v + 2 * stride));
+    const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7) + i;
+    int8 counts = (tent_u > 0.0f) & (tent_v > 0.0f) & (lane < last);
+    if (!any(counts)) continue;
+    const uint8 packed = as_uint8(vload8(0, entries + PHOTON_DIRECTION * stride + i));
+    counts &= (packed >> LEVEL_SHIFT == level) & came_to_front(as_int8(packed), n) &
+              (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
+    sums->minus_count += counts;
+    const float8 weight = counts ? tent_u * tent_v : 0.0f;
+    // What lies behind the last entry may be no number, which a weight of 0 would not take out.
+    const float8 red = vload8(0, entries + (PHOTON_POWER + 0) * stride + i);
+    const float8 green = vload8(0, entries + (PHOTON_POWER + 1) * stride + i);
+    const float8 blue = vload8(0, entries + (PHOTON_POWER + 2) * stride + i);
+    sums->red = fma(weight, counts ? red : 0.0f, sums->red);
+    sums->green = fma(weight, counts ? green : 0.0f, sums->green);
+    sums->blue = fma(weight, counts ? blue : 0.0f, sums->blue);
+  }
+}
+
+// Irradiance [W/m2] at p on the side of the unit normal n, and the number of `photons` that it is made of.
+FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, uint* photons) {
+  Sums sums = no_sums();
+  for (uint level = 0; level < 2; ++level) add_cell(map, p, n, level, &sums);
+  *photons = photons_in(&sums);
+  return total_power(&sums);
+}
+
+#endif
