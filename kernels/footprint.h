@@ -9,12 +9,20 @@
 #include "lights.h"
 #include "photon_map.h"
 
+// A point of the lattice as what emission takes: the square of the radius in a disc, and the angle in turns. Shirley and
+// Chiu, A Low Distortion Map Between Disk and Square, 1997: neighbours in the square are neighbours in the disc.
 FUNCTION void lattice_point(const LatticeData lattice, const Uint point, Float u[2]) {
-  const Uint column = point >> lattice.log2_rows;
-  const Uint row = point & ((1u << lattice.log2_rows) - 1u);
+  const Float column = TO_FLOAT(AS_INT(point >> lattice.log2_rows));
+  const Float row = TO_FLOAT(AS_INT(point & ((1u << lattice.log2_rows) - 1u)));
+  const Float x = fma((Float)2.0f, (column + lattice.shift_u) / (float)lattice.columns, (Float)-1.0f);
+  const Float y = fma((Float)2.0f, (row + lattice.shift_v) / (float)(1u << lattice.log2_rows), (Float)-1.0f);
+  const Mask wide = fabs(x) > fabs(y);
+  const Float radius = wide ? x : y;
+  const Float slope = (wide ? y : x) / (radius == 0.0f ? (Float)1.0f : radius);
+  const Float turns = (wide ? 0.125f * slope : fma((Float)-0.125f, slope, (Float)0.25f)) + (radius < 0.0f ? 0.5f : 0.0f);
   const Float below_1 = 0.99999994f;
-  u[0] = smaller((TO_FLOAT(AS_INT(column)) + lattice.shift_u) / (float)lattice.columns, below_1);
-  u[1] = smaller((TO_FLOAT(AS_INT(row)) + lattice.shift_v) / (float)(1u << lattice.log2_rows), below_1);
+  u[0] = smaller(radius * radius, below_1);
+  u[1] = smaller(turns < 0.0f ? turns + 1.0f : turns, below_1);
 }
 
 // The parallelogram's sides, and into how many parts each is cut.
@@ -67,10 +75,7 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
     const Uint way = AS_UINT(GATHER(Float, landings, 4u * own + 3u));
     u = difference(landings, place, way, own + (1u << lattice.log2_rows), on_lattice & (column + 1u < lattice.columns),
                    own - (1u << lattice.log2_rows), on_lattice & (column > 0u), &found);
-    // Rows go around.
-    const Uint start = own - (own & row_mask);
-    v = difference(landings, place, way, start | ((row + 1u) & row_mask), on_lattice, start | ((row - 1u) & row_mask),
-                   on_lattice, &found);
+    v = difference(landings, place, way, own + 1u, on_lattice & (row < row_mask), own - 1u, on_lattice & (row > 0u), &found);
   }
 
   // The sides as a matrix (a b; c d) in the receiver's plane, its columns u and v.

@@ -28,7 +28,7 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
     int8 counts = (tent_u > 0.0f) & (tent_v > 0.0f) & (lane < last);
     if (!any(counts)) continue;
     const uint8 packed = as_uint8(vload8(0, entries + PHOTON_DIRECTION * stride + i));
-    counts &= (packed >> LEVEL_SHIFT == level) & came_to_front(as_int8(packed), n) &
+    counts &= ((packed >> LEVEL_SHIFT & 1u) == level) & came_to_front(as_int8(packed), n) &
               (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
     sums->minus_count += counts;
     const float8 weight = counts ? tent_u * tent_v : 0.0f;

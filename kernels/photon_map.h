@@ -57,6 +57,13 @@
 #endif
 #endif
 
+// Large footprints, level 1, are listed by cells so many times larger. They share the grid with the small ones' cells, half
+// of it away from those of the same place, where there is less of a crowd; the highest bits of an entry's direction tell
+// them apart, and the entry of the cell about its own middle from its others.
+#define LEVEL_RATIO 4.0f
+#define LEVEL_SHIFT 30u
+#define IN_OTHER_CELL 0x80000000u
+
 #define BUCKET_UNIT 16u        // floats
 typedef struct {
   uint start;                  // in units
@@ -128,12 +135,6 @@ FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
   const uint z = (uint)iz & ((1u << grid.log2_z) - 1u);
   return ((z << grid.log2_y) | y) << grid.log2_x;
 }
-
-// Large footprints, level 1, are listed by cells so many times larger. They share the grid with the small ones' cells, half
-// of it away from those of the same place, where there is less of a crowd; the highest bits of an entry's direction tell
-// them apart.
-#define LEVEL_RATIO 4.0f
-#define LEVEL_SHIFT 30u
 
 FUNCTION uint cell_of_level(const GridData grid, uint level, int ix, int iy, int iz) {
   const uint x = ((uint)ix + (level << grid.log2_x >> 1)) & ((1u << grid.log2_x) - 1u);

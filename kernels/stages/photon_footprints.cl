@@ -56,6 +56,8 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
         const int x_last = min(cell_coordinate(last_corner.x, inverse_cell), x_first + (1 << grid.log2_x) - 1);
         const int y_last = min(cell_coordinate(last_corner.y, inverse_cell), y_first + (1 << grid.log2_y) - 1);
         const int z_last = min(cell_coordinate(last_corner.z, inverse_cell), z_first + (1 << grid.log2_z) - 1);
+        const uint own_cell = cell_of_level(grid, level, cell_coordinate(middle.x, inverse_cell),
+                                            cell_coordinate(middle.y, inverse_cell), cell_coordinate(middle.z, inverse_cell));
         for (int iz = z_first; iz <= z_last; ++iz)
           for (int iy = y_first; iy <= y_last; ++iy)
             for (int ix = x_first; ix <= x_last; ++ix) {
@@ -64,7 +66,7 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
               if (!rows) continue;
               __global float* row = rows + (ulong)FOOTPRINT_ROW * place_of_row;
               vstore3(middle, 0, row + PHOTON_X);
-              row[PHOTON_DIRECTION] = as_float(direction);
+              row[PHOTON_DIRECTION] = as_float(cell == own_cell ? direction : direction | IN_OTHER_CELL);
               vstore3(power, 0, row + PHOTON_POWER);
               vstore3(across_u, 0, row + FOOTPRINT_U);
               vstore3(across_v, 0, row + FOOTPRINT_V);

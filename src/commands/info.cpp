@@ -5,6 +5,7 @@
 #include "commands/scene_arguments.hpp"
 #include "core/printed.hpp"
 #include "device/scene_data.hpp"
+#include "render/photon_pass.hpp"
 #include "scene/features.hpp"
 #include "scene/textures.hpp"
 
@@ -91,10 +92,13 @@ void run_info(const SceneArguments& arguments) {
   const double pixels = static_cast<double>(scene.film.width) * scene.film.height;
   std::printf(", film %.3f MiB", pixels * FILM_PLANES * sizeof(float) / 0x1p20);
   if (features.caustics) {
-    // Of one pass: as stored and in rows of the sort; or in a tree, with a node to seven leaves or nodes of eight photons.
-    const double floats =
-        PHOTON_ROW + (features.nearest_photons ? PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0 : double{PHOTON_ROW});
-    const double photons = std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
+    // Of one pass: as stored and in rows of the sort; or in a tree, with a node to seven leaves or nodes of eight photons. With
+    // footprints, room for as many that branch off, and about six entries each.
+    const double floats = features.footprints ? (2.0 + 6.0) * FOOTPRINT_ROW
+                                              : PHOTON_ROW + (features.nearest_photons ? PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0
+                                                                                       : double{PHOTON_ROW});
+    double photons = std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
+    if (features.footprints) photons = std::min(photons, static_cast<double>(most_footprints));
     std::printf(", photon map up to %.1f MiB", photons * (sizeof(float) * floats) / 0x1p20);
   }
   std::printf("\n");

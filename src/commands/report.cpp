@@ -36,11 +36,11 @@ ordered_json photon_estimate(const Scene& scene, const RenderResult& result) {
   const bool nearest = scene.photons.estimate == PhotonEstimate::nearest;
   const double photons = result.photons_in_estimate();
   // Of n photons the circle has the relative error 1 / sqrt(n), Epanechnikov's kernel, whose mean square is 4/3 of its
-  // squared mean, sqrt(4 / (3 n)).
+  // squared mean, sqrt(4 / (3 n)). Photons of a lattice tell nothing by their number.
   const double noise = std::sqrt((nearest ? 1.0 : 4.0 / 3.0) / photons);
   ordered_json json = {{"radius_m", result.photon_radius},
                        {"photons", photons},
-                       {"noise", photons > 0.0 ? ordered_json(noise) : ordered_json(nullptr)}};
+                       {"noise", photons > 0.0 && !result.features.footprints ? ordered_json(noise) : ordered_json(nullptr)}};
   const std::vector<double> bias = result.film.mean("bias"), variance = result.film.variance_of_mean("bias");
   if (variance.empty()) return json;
   json["bias"] = summary(bias, result.film.width());

@@ -118,8 +118,7 @@ struct PhotonPass::State {
     if (!context.features.footprints || n < 64 || context.scene.photons.sampling == Sampling::independent ||
         context.data.lights[pairs[number].light].kind > LIGHT_DIRECTIONAL)
       return {};
-    // Directions are at radius sqrt(u) and angle 2 pi v: four rows to a column, and cells are about as wide as long.
-    const auto log2_rows = static_cast<uint32_t>(std::lround(0.5 * std::log2(4.0 * static_cast<double>(n))));
+    const auto log2_rows = static_cast<uint32_t>(std::lround(0.5 * std::log2(static_cast<double>(n))));
     // From pass to pass the lattice moves evenly.
     const uint64_t key = mix_bits(mix_bits(context.scene.render.seed, number), 0x1a771ce);
     const std::array<float, 2> step = r2_point(pass);
@@ -227,7 +226,8 @@ PhotonPass::PhotonPass(const KernelContext& context, uint64_t largest_pass)
 PhotonPass::~PhotonPass() = default;
 
 uint64_t PhotonPass::capacity(const Device& device, const Features& features) {
-  if (features.footprints) return std::min<uint64_t>(device.info().max_allocation >> 8, 1u << 20);
+  constexpr uint64_t waiting = 2 * 2 * FOOTPRINT_ROW * sizeof(float);  // of a photon and what branches off, with some to spare
+  if (features.footprints) return std::min(uint64_t{device.info().max_allocation} / waiting, most_footprints);
   // A photon takes a row of one array, with some to spare; half of the memory may go to it. Offsets in it fit 32 bits.
   constexpr double row = largest_row_share * PHOTON_ROW * sizeof(float);
   const double bytes = static_cast<double>(std::min(device.info().max_allocation, device.info().memory / 2));
@@ -279,10 +279,18 @@ const PhotonBalance& PhotonPass::balance() const { return state_->balance; }
 
 std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map) {
   std::vector<cl_float8> photons;
-  const auto append = [&photons](const float* fields, size_t stride, size_t count) {
+  const auto append = [&photons, &map](const float* fields, size_t stride, size_t count) {
     for (size_t i = 0; i < count; ++i) {
       cl_float8 photon{};
       for (size_t field = 0; field < PHOTON_FIELDS; ++field) photon.s[field] = fields[field * stride + i];
+      if (map.fields == FOOTPRINT_FIELDS) {
+        if (std::bit_cast<uint32_t>(photon.s[PHOTON_DIRECTION]) & IN_OTHER_CELL) continue;
+        const auto vector = [&](size_t field) {
+          return glm::vec3(fields[field * stride + i], fields[(field + 1) * stride + i], fields[(field + 2) * stride + i]);
+        };
+        const float area = 1.0f / glm::length(glm::cross(vector(FOOTPRINT_U), vector(FOOTPRINT_V)));
+        for (size_t channel = 0; channel < 3; ++channel) photon.s[PHOTON_POWER + channel] *= area;
+      }
       photons.push_back(photon);
     }
   };

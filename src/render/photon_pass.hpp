@@ -55,11 +55,15 @@ struct PhotonMap {
   Buffer<float> leaves, nodes;
 };
 
-/// The photons of the map {x, y, z, packed direction, power r, g, b, -}, in no order that means anything.
+/// The photons of the map {x, y, z, packed direction, power r, g, b, -}, in no order that means anything; where a footprint was
+/// cut, its parts.
 std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map);
 
 /// Sets a kernel's PHOTON_MAP_PARAMETERS (kernels/gather.h) from argument `first` on; returns the next argument's index.
 unsigned set_map_arguments(cl::Kernel& kernel, unsigned first, const PhotonMap& map, const Scene& scene);
+
+/// Photons of a pass with footprints, which all wait in memory until their neighbours are known.
+inline constexpr uint64_t most_footprints = 1u << 20;
 
 /// Traces photons pass by pass; keeps its buffers between passes.
 class PhotonPass {
@@ -68,7 +72,7 @@ class PhotonPass {
   PhotonPass(const KernelContext& context, uint64_t largest_pass);
   ~PhotonPass();
 
-  /// Photons that a single pass can hold on this device. With footprints, all of a pass wait until their neighbours are known.
+  /// Photons that a single pass can hold on this device.
   static uint64_t capacity(const Device& device, const Features& features);
 
   /// Emits `count` photons of `replicate`, of which `before` have been emitted already, as pass number `pass` of the

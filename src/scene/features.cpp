@@ -147,11 +147,17 @@ std::string Features::names() const {
   return text.empty() ? "none" : text;
 }
 
-std::vector<std::string> stages_for(const Features& f) {
-  std::vector<std::string> stages = {"camera"};
+std::vector<std::string> photon_stages_for(const Features& f) {
+  std::vector<std::string> stages;
   if (f.caustics) stages.push_back("photons");
   if (f.caustics && !f.nearest_photons) stages.push_back("photon_sort");
   if (f.footprints) stages.push_back("photon_footprints");
+  return stages;
+}
+
+std::vector<std::string> stages_for(const Features& f) {
+  std::vector<std::string> stages = photon_stages_for(f);
+  stages.insert(stages.begin(), "camera");
   return stages;
 }
 

@@ -36,5 +36,7 @@ Features scene_features(const Scene& scene);
 
 /// Names of the kernel stages (kernels/stages/NAME.cl) that will be built for these features.
 std::vector<std::string> stages_for(const Features& features);
+/// Those of them that photons need.
+std::vector<std::string> photon_stages_for(const Features& features);
 
 }  // namespace vitrum

@@ -18,7 +18,7 @@ class PhotonRun {
         features_(scene_features(scene)),
         data_(scene_data(scene, features_)),
         tree_(features_.mesh ? build_tree(data_.tree_triangles) : Tree{}),
-        kernels_(device, files, {"photons", "photon_sort"}, features_.build_options()),
+        kernels_(device, files, photon_stages_for(features_), features_.build_options()),
         device_scene_(upload(device, data_, features_, features_.mesh ? &tree_ : nullptr)),
         pass_(KernelContext{device_, kernels_, scene_, data_, device_scene_, features_}, largest_pass) {}
 

@@ -77,7 +77,7 @@ inline Scene constant_reflectance(int size, uint64_t photons) {
 
 /// All at once: meshes of glass that stand on the floor and in each other, an eye in a medium, textures, highlights,
 /// each kind of light. Photons are gathered within a radius or, `nearest`, by their number.
-inline Scene everything(int size, uint64_t photons, bool nearest) {
+inline Scene everything(int size, uint64_t photons, PhotonEstimate estimate) {
   Scene scene = over_a_floor(size, photons);
   scene.textures = {checks(TextureFilter::bilinear, false), checks(TextureFilter::nearest, true)};
   scene.materials[0].diffuse_texture = 0;
@@ -113,7 +113,7 @@ inline Scene everything(int size, uint64_t photons, bool nearest) {
   scene.lights.push_back({"ball", {}, SphereLight{{-1.2, 1.5, 1}, 0.1, Spectrum(3.0)}});
   scene.render.max_depth = 40;
   scene.photons.nearest = 8;
-  if (nearest) scene.photons.estimate = PhotonEstimate::nearest;
+  scene.photons.estimate = estimate;
   return scene;
 }
 
@@ -128,8 +128,9 @@ inline std::vector<NamedScene> switch_scenes(int size, uint64_t photons) {
           {"a bare floor", bare_floor(size)},
           {"mirrors", mirrors(size, photons)},
           {"constant reflectance", constant_reflectance(size, photons)},
-          {"everything, radius", everything(size, photons, false)},
-          {"everything, nearest", everything(size, photons, true)}};
+          {"everything, radius", everything(size, photons, PhotonEstimate::automatic)},
+          {"everything, footprints", everything(size, photons, PhotonEstimate::footprints)},
+          {"everything, nearest", everything(size, photons, PhotonEstimate::nearest)}};
 }
 
 }  // namespace vitrum

@@ -42,7 +42,7 @@ TEST_CASE("switches: the scenes take each both ways") {
     CAPTURE(name);
     if (name.rfind("HAS_", 0) == 0) CHECK(taken == std::set<std::string>{"0", "1"});
   }
-  CHECK(values.at("CAUSTICS").size() == 3);
+  CHECK(values.at("CAUSTICS").size() == 4);
   CHECK(values.at("CAMERA_STACK").size() == 2);
   CHECK(values.at("LIGHT_KINDS").contains("63"));
   CHECK(values.contains("CONSTANT_REFLECTANCE"));
