@@ -44,7 +44,7 @@ FUNCTION Float parts_of(const Float side, const float largest) {
 // From a photon's place towards its neighbour ahead, or from that behind to it. Where both went the same way and lie about
 // as far, it is their mean; else the nearer's, so that footprints do not bridge what a facet's edge has torn apart.
 FUNCTION Vec3 difference(__global const float* landings, const Vec3 place, const Uint way, const Uint ahead,
-                         const Mask is_ahead, const Uint behind, const Mask is_behind, Mask* found) {
+                         const Mask is_ahead, const Uint behind, const Mask is_behind, Mask* found, Mask* at_edge) {
   const Uint to = 4u * (is_ahead ? ahead : (Uint)0);
   const Uint from = 4u * (is_behind ? behind : (Uint)0);
   const Vec3 forward = subtract3(GATHER3(landings, to), place);
@@ -56,26 +56,29 @@ FUNCTION Vec3 difference(__global const float* landings, const Vec3 place, const
   const Mask alike = has_ahead & has_behind & (forward2 < 4.0f * backward2) & (backward2 < 4.0f * forward2);
   const Mask goes_ahead = has_ahead & ((has_behind == 0) | (forward2 < backward2));
   *found &= has_ahead | has_behind;
+  *at_edge |= (has_ahead & has_behind) == 0;
   return select3(alike, scale3(0.5f, add3(forward, backward)), select3(goes_ahead, forward, backward));
 }
 
 // Of photons that arrived at `place` on a surface with this normal. Those without a lattice or alone on their way spread
 // over a square.
 FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float* landings, const FootprintLimits limits,
-                                const Uint point, const Vec3 place, const Vec3 normal) {
+                                const Uint point, const Float spacing, const Vec3 place, const Vec3 normal) {
   const Uint row_mask = (1u << lattice.log2_rows) - 1u;
   const Uint column = point >> lattice.log2_rows;
   const Uint row = point & row_mask;
   Mask found = lattice.columns > 0 ? point != NO_POINT : (Mask)0;
   const Mask on_lattice = found;
+  Mask at_edge = 0;            // of those that went its way
   const Uint own = on_lattice ? point : (Uint)0;
   Vec3 u = make_vec3(0.0f, 0.0f, 0.0f);
   Vec3 v = u;
   if (ANY(on_lattice)) {
     const Uint way = AS_UINT(GATHER(Float, landings, 4u * own + 3u));
     u = difference(landings, place, way, own + (1u << lattice.log2_rows), on_lattice & (column + 1u < lattice.columns),
-                   own - (1u << lattice.log2_rows), on_lattice & (column > 0u), &found);
-    v = difference(landings, place, way, own + 1u, on_lattice & (row < row_mask), own - 1u, on_lattice & (row > 0u), &found);
+                   own - (1u << lattice.log2_rows), on_lattice & (column > 0u), &found, &at_edge);
+    v = difference(landings, place, way, own + 1u, on_lattice & (row < row_mask), own - 1u, on_lattice & (row > 0u), &found,
+                   &at_edge);
   }
 
   // The sides as a matrix (a b; c d) in the receiver's plane, its columns u and v.
@@ -83,10 +86,12 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   const Float off_u = dot3(u, normal);
   const Float off_v = dot3(v, normal);
   found &= (off_u * off_u <= 0.25f * dot3(u, u)) & (off_v * off_v <= 0.25f * dot3(v, v));
-  Float a = found ? dot3(u, frame.x) : limits.largest;
+  // Alone on its way, it is one of few, farther apart.
+  const Float alone = limits.largest * smaller(on_lattice ? larger(spacing, (Float)LEVEL_RATIO) : spacing, (Float)FOOTPRINT_MOST_PARTS);
+  Float a = found ? dot3(u, frame.x) : alone;
   Float b = found ? dot3(v, frame.x) : 0.0f;
   Float c = found ? dot3(u, frame.y) : 0.0f;
-  Float d = found ? dot3(v, frame.y) : limits.largest;
+  Float d = found ? dot3(v, frame.y) : alone;
 
   // Where light is focussed, a footprint shrinks to nothing, which a pixel's samples would miss or catch by chance. So its
   // axes (singular values q + r and q - r) are at least what lies between samples. What goes beyond the largest side by more
@@ -104,7 +109,9 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   const Float q = sqrt(fma(half_sum, half_sum, half_turn * half_turn));
   const Float r = sqrt(fma(half_difference, half_difference, half_shear * half_shear));
   const Float long_axis = larger(smaller(q + r, most), least);
-  const Float short_axis = larger(smaller(fabs(q - r), most), least);
+  // At an edge the neighbours may lie along it, and say nothing of what is across.
+  const Float least_short = at_edge ? larger(least, 0.125f * long_axis) : least;
+  const Float short_axis = larger(smaller(fabs(q - r), most), least_short);
   const Float signed_short = q < r ? -short_axis : short_axis;
   const Float new_q = 0.5f * (long_axis + signed_short);
   const Float new_r = 0.5f * (long_axis - signed_short);

@@ -41,7 +41,8 @@
 // and in a run:
 #define ARRIVED_POINT 7        // uint: of the lattice of emission; NO_POINT: none
 #define ARRIVED_NORMAL 8       // 3 floats
-#define ARRIVED_FIELDS 11
+#define ARRIVED_SPACING 11     // how much farther than all photons those are apart that went its way by chance
+#define ARRIVED_FIELDS 12
 #define NO_POINT 0xffffffffu
 
 #ifdef __OPENCL_VERSION__

@@ -16,6 +16,7 @@ typedef struct {
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
   Uint point;                  // of the lattice of emission; NO_POINT: none
   Uint way;                    // hash of what it met and did there: photons of one way are neighbours all along
+  Float spacing;               // 1 / sqrt(probability) of its way where that was left to chance
 #endif
   Mask alive;
 } Photons;
@@ -110,9 +111,15 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
         front_branched = (leaves & mostly_reflects) ? entering == 0 : front_branched;
         branched->stack = leaves ? (mostly_reflects ? (Uint)split.stack_refracted : (Uint)split.stack_reflected)
                                  : branched->stack;
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+        branched->spacing = leaves ? photons->spacing / sqrt(lesser) : branched->spacing;
+#endif
         branched->path = leaves ? hash_pair(photons->path, depth | HAS_BRANCHED) : branched->path;
         photons->history |= leaves ? HAS_BRANCHED : (Uint)0;
       }
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+      photons->spacing = (e.here & drawn & (splits == 0)) ? photons->spacing / sqrt(lesser) : photons->spacing;
+#endif
       add_power(split_off, splits, scale3((drawn ? (Float)1.0f : (Float)0.0f) - lesser, photons->power));
       photons->power = select3(splits, scale3(1.0f - lesser, photons->power), photons->power);
       const Float rest = (drawn ? u : u - lesser) / (drawn ? lesser : 1.0f - lesser);

@@ -22,7 +22,8 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
         make_vec3(LOAD(photon, ARRIVED_NORMAL * stride), LOAD(photon, (ARRIVED_NORMAL + 1) * stride),
                   LOAD(photon, (ARRIVED_NORMAL + 2) * stride));
     const Uint point = here ? AS_UINT(LOAD(photon, ARRIVED_POINT * stride)) : (Uint)NO_POINT;
-    const Footprint f = footprint_of(lattice, landings, limits, point, place, normal);
+    const Float spacing = here ? LOAD(photon, ARRIVED_SPACING * stride) : 1.0f;
+    const Footprint f = footprint_of(lattice, landings, limits, point, spacing, place, normal);
     FOR_LANES(lane, here) {
       const uint parts_u = LANE(f.parts_u, uint, lane);
       const uint parts_v = LANE(f.parts_v, uint, lane);

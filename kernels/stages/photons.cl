@@ -67,6 +67,7 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
   photons.point = lattice.columns > 0 ? point : (Uint)NO_POINT;
   photons.way = 0;
+  photons.spacing = 1.0f;
 #endif
   photons.alive = (Mask)-1;
   return photons;
@@ -76,7 +77,7 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
 // WIDTH wait in either queue. One that is taken puts no more back than it had, and as many that branch off, which do not
 // branch again: so less than 4 WIDTH wait in both.
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
-#define WAITING_FIELDS 16
+#define WAITING_FIELDS 17
 #else
 #define WAITING_FIELDS 14
 #endif
@@ -106,6 +107,7 @@ FUNCTION void wait_in(Waiting* waiting, const Photons* photons, const Mask which
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
     waiting->fields[14][k] = as_float(LANE(photons->point, uint, lane));
     waiting->fields[15][k] = as_float(LANE(photons->way, uint, lane));
+    waiting->fields[16][k] = LANE(photons->spacing, float, lane);
 #endif
   }
 }
@@ -129,6 +131,7 @@ FUNCTION Photons take_waiting(Waiting* waiting) {
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
   photons.point = AS_UINT(LOAD(waiting->fields[14], k));
   photons.way = AS_UINT(LOAD(waiting->fields[15], k));
+  photons.spacing = LOAD(waiting->fields[16], k);
 #endif
   photons.alive = lanes_below(0, taken);
   return photons;
@@ -171,6 +174,7 @@ FUNCTION void store_photons(const Photons* photons, const SurfacePacket* surface
   values[ARRIVED_NORMAL + 0] = normal.x;
   values[ARRIVED_NORMAL + 1] = normal.y;
   values[ARRIVED_NORMAL + 2] = normal.z;
+  values[ARRIVED_SPACING] = photons->spacing;
 #else
   values[PHOTON_CELL] = AS_FLOAT(cells_of(grid, photons->origin));
 #endif

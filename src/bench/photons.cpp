@@ -15,6 +15,7 @@ struct Case {
   std::string name;
   Scene scene;
   std::function<double(const RenderResult&)> error;
+  uint64_t worth = 1;  ///< photons with a radius that one of its photons makes up for: samples go by them
 };
 
 /// The caustic is finer than pixels, which shows once there are many photons.
@@ -26,12 +27,21 @@ std::vector<Case> plates(bool quick) {
   const auto add_case = [&](const char* name, const CausticPlate& plate) {
     cases.push_back({name, plate.scene, [plate](const RenderResult& result) { return plate.error(result); }});
   };
+  const auto add_footprints = [&](const char* name, const CausticPlate& plate) {
+    add_case(name, plate);
+    cases.back().scene.photons.estimate = PhotonEstimate::footprints;
+    cases.back().worth = 16;
+  };
   const CausticPlate exact;
   add_case("exact ball", exact);
   add_case("exact ball, 50 nearest photons (Jensen 1996)", exact);
   cases.back().scene.photons.estimate = PhotonEstimate::nearest;
   cases.back().scene.photons.max_radius = 0.1;
-  if (!quick) add_case("ball of 516,960 triangles", CausticPlate(360));
+  add_footprints("exact ball, footprints", exact);
+  if (quick) return cases;
+  const CausticPlate mesh(360);
+  add_case("ball of 516,960 triangles", mesh);
+  add_footprints("ball of 516,960 triangles, footprints", mesh);
   return cases;
 }
 
@@ -63,7 +73,7 @@ BenchResult bench_photons(const BenchContext& context) {
     for (uint64_t count = least; count <= most; count *= 4) {
       Scene scene = c.scene;
       scene.photons.count = count;
-      scene.render.samples = samples_for(count);
+      scene.render.samples = samples_for(c.worth * count);
       const RenderResult r = timed_render(context, scene, View::caustics);
       const double photons = static_cast<double>(count), error = c.error(r);
       const double photon_seconds = r.cpu_seconds.at("photon"), seconds = compute_seconds(r);

@@ -54,8 +54,8 @@ TEST_CASE("footprints: 16,384 photons tell the caustic of a ball, exact and as a
     const RenderResult with = caustics_of(plate.scene, 16384, 64, PhotonEstimate::footprints, device);
     const RenderResult without = caustics_of(plate.scene, 16384, 64, PhotonEstimate::automatic, device);
     MESSAGE("errors " << plate.error(with) << " and " << plate.error(without) << ", flux " << flux_ratio(plate, with));
-    CHECK(plate.error(with) < 0.11);
-    CHECK(plate.error(with) < 0.5 * plate.error(without));
+    CHECK(plate.error(with) < 0.09);
+    CHECK(plate.error(with) < 0.4 * plate.error(without));
     CHECK(std::abs(flux_ratio(plate, with) - 1) < 0.01);
   }
 }
