@@ -66,6 +66,10 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   branched->alive = 0;
   branched->direction = direction;
   branched->stack = stack;
+#ifdef CLEAR_DEAD_LANES
+  branched->power = photons->power;
+  branched->path = photons->path;
+#endif
 
   // [photon]
   const Uint keys = encounter_keys(surface, stack);

@@ -212,6 +212,12 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   // Those outside of all media and those inside wait apart, since they meet different surfaces.
   Waiting waiting[2];
   waiting[0].count = waiting[1].count = 0;
+#ifdef CLEAR_DEAD_LANES
+  // A packet that is not full takes its dead lanes from behind those that wait.
+  for (uint queue = 0; queue < 2; ++queue)
+    for (uint field = 0; field < WAITING_FIELDS; ++field)
+      for (uint k = 0; k < 6 * WIDTH; ++k) waiting[queue].fields[field][k] = 0.0f;
+#endif
   Aim aim;
   int aimed = 0;
   uint next = first;
