@@ -87,7 +87,8 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   const Float off_v = dot3(v, normal);
   found &= (off_u * off_u <= 0.25f * dot3(u, u)) & (off_v * off_v <= 0.25f * dot3(v, v));
   // Alone on its way, it is one of few, farther apart.
-  const Float alone = limits.largest * smaller(on_lattice ? larger(spacing, (Float)LEVEL_RATIO) : spacing, (Float)FOOTPRINT_MOST_PARTS);
+  const Float apart = on_lattice ? larger(spacing, (Float)LEVEL_RATIO) : spacing;
+  const Float alone = limits.largest * smaller(apart, (Float)FOOTPRINT_MOST_PARTS);
   Float a = found ? dot3(u, frame.x) : alone;
   Float b = found ? dot3(v, frame.x) : 0.0f;
   Float c = found ? dot3(u, frame.y) : 0.0f;

@@ -30,15 +30,7 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
     const uint8 packed = as_uint8(vload8(0, entries + PHOTON_DIRECTION * stride + i));
     counts &= ((packed >> LEVEL_SHIFT & 1u) == level) & came_to_front(as_int8(packed), n) &
               (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
-    sums->minus_count += counts;
-    const float8 weight = counts ? tent_u * tent_v : 0.0f;
-    // What lies behind the last entry may be no number, which a weight of 0 would not take out.
-    const float8 red = vload8(0, entries + (PHOTON_POWER + 0) * stride + i);
-    const float8 green = vload8(0, entries + (PHOTON_POWER + 1) * stride + i);
-    const float8 blue = vload8(0, entries + (PHOTON_POWER + 2) * stride + i);
-    sums->red = fma(weight, counts ? red : 0.0f, sums->red);
-    sums->green = fma(weight, counts ? green : 0.0f, sums->green);
-    sums->blue = fma(weight, counts ? blue : 0.0f, sums->blue);
+    add_weighted(entries, stride, i, counts, tent_u * tent_v, sums);
   }
 }
 

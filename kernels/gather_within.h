@@ -18,15 +18,7 @@ FUNCTION void add_photons(__global const float* map, uint stride, uint first, ui
     if (!any(counts)) continue;
     const int8 packed = as_int8(vload8(0, map + PHOTON_DIRECTION * stride + i));
     counts &= came_to_front(packed, n) & (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
-    sums->minus_count += counts;
-    const float8 weight = counts ? nearness : 0.0f;
-    // What lies behind the last photon may be no number, which a weight of 0 would not take out.
-    const float8 red = vload8(0, map + (PHOTON_POWER + 0) * stride + i);
-    const float8 green = vload8(0, map + (PHOTON_POWER + 1) * stride + i);
-    const float8 blue = vload8(0, map + (PHOTON_POWER + 2) * stride + i);
-    sums->red = fma(weight, counts ? red : 0.0f, sums->red);
-    sums->green = fma(weight, counts ? green : 0.0f, sums->green);
-    sums->blue = fma(weight, counts ? blue : 0.0f, sums->blue);
+    add_weighted(map, stride, i, counts, nearness, sums);
   }
 }
 // [/gather]

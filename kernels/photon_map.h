@@ -79,11 +79,9 @@ FUNCTION ulong photon_in_run(uint run_length, uint run, uint field, uint row) {
   return ((ulong)run * row + field) * photons_stride(run_length);
 }
 
-// A lattice of emission: photons first + i, i = 0, 1, ..., are at (column + shift_u) / columns, (row + shift_v) / rows of the
-// unit square, column by column; the number of rows is a power of
-// two.
+// A lattice of emission: its points are at (column + shift_u) / columns, (row + shift_v) / rows of the unit square, numbered
+// column by column; the number of rows is a power of two.
 typedef struct {
-  uint first;
   uint columns;                // 0: there is no lattice
   uint log2_rows;
   float shift_u, shift_v;      // in [0, 1)

@@ -17,7 +17,8 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
   for (uint first = 0; first < stored; first += WIDTH) {
     __global const float* photon = fields + first;
     const Mask here = lanes_below(first, stored);
-    const Vec3 place = make_vec3(LOAD(photon, PHOTON_X * stride), LOAD(photon, PHOTON_Y * stride), LOAD(photon, PHOTON_Z * stride));
+    const Vec3 place =
+        make_vec3(LOAD(photon, PHOTON_X * stride), LOAD(photon, PHOTON_Y * stride), LOAD(photon, PHOTON_Z * stride));
     const Vec3 normal =
         make_vec3(LOAD(photon, ARRIVED_NORMAL * stride), LOAD(photon, (ARRIVED_NORMAL + 1) * stride),
                   LOAD(photon, (ARRIVED_NORMAL + 2) * stride));
@@ -35,7 +36,8 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
       const float3 power = (float3)(photon[PHOTON_POWER * stride + lane], photon[(PHOTON_POWER + 1) * stride + lane],
                                     photon[(PHOTON_POWER + 2) * stride + lane]) / LANE(f.area, float, lane);
       // Of a part's tent, and what lies off its plane.
-      const float3 reach = fabs(side_u) + fabs(side_v) + FOOTPRINT_OFF_PLANE * 2.0f * limits.largest * fabs(LANE3(normal, lane));
+      const float off_plane = FOOTPRINT_OFF_PLANE * 2.0f * limits.largest;
+      const float3 reach = fabs(side_u) + fabs(side_v) + off_plane * fabs(LANE3(normal, lane));
       const uint level = LANE(f.level, uint, lane);
       const float inverse_cell = level ? grid.inverse_cell / LEVEL_RATIO : grid.inverse_cell;
       const uint direction = as_uint(photon[PHOTON_DIRECTION * stride + lane]) | level << LEVEL_SHIFT;
@@ -57,8 +59,9 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
         const int x_last = min(cell_coordinate(last_corner.x, inverse_cell), x_first + (1 << grid.log2_x) - 1);
         const int y_last = min(cell_coordinate(last_corner.y, inverse_cell), y_first + (1 << grid.log2_y) - 1);
         const int z_last = min(cell_coordinate(last_corner.z, inverse_cell), z_first + (1 << grid.log2_z) - 1);
-        const uint own_cell = cell_of_level(grid, level, cell_coordinate(middle.x, inverse_cell),
-                                            cell_coordinate(middle.y, inverse_cell), cell_coordinate(middle.z, inverse_cell));
+        const uint own_cell =
+            cell_of_level(grid, level, cell_coordinate(middle.x, inverse_cell), cell_coordinate(middle.y, inverse_cell),
+                          cell_coordinate(middle.z, inverse_cell));
         for (int iz = z_first; iz <= z_last; ++iz)
           for (int iy = y_first; iy <= y_last; ++iy)
             for (int ix = x_first; ix <= x_last; ++ix) {

@@ -29,8 +29,8 @@ KERNEL void sort_into_buckets(const uint n_runs, const uint run_length, const ui
                               __global uint* places, __global float8* rows) {
   const uint run = get_global_id(0);
   if (run < n_runs)
-    move_run(reports[run].photons[OUTCOME_STORED], run_length, bucket_shift, photons + photon_in_run(run_length, run, 0, PHOTON_ROW),
-             places + run * buckets, rows);
+    move_run(reports[run].photons[OUTCOME_STORED], run_length, bucket_shift,
+             photons + photon_in_run(run_length, run, 0, PHOTON_ROW), places + run * buckets, rows);
 }
 
 #endif

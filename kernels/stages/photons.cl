@@ -1,6 +1,6 @@
 // Stage photons: a pair of light and caster shoots photons, which are followed to their end.
-// Reads: the scene, the casters, the sequences. Writes: for each run of photons its stored ones, how many of them are in
-// each bucket of the grid, and its PhotonRunData.
+// Reads: the scene, the casters, the sequences. Writes: for each run of photons its stored ones, its PhotonRunData, and how
+// many of them are in each bucket of the grid or, with footprints, where the points of the lattice landed.
 // A work-item minds one run: WIDTH photons at a time, in registers from the light to where they end. The few that go
 // other ways than most wait until they fill a packet of their own, so that lanes rarely idle.
 #include "emission.h"
@@ -51,7 +51,7 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   u[0] = sequence_float(&sequences[0], first);
   u[1] = sequence_float(&sequences[1], first);
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
-  const Uint point = LANES + (lattice.first + first);
+  const Uint point = LANES + first;
   if (lattice.columns > 0) lattice_point(lattice, point, u);
 #endif
   const Emission emission = emit(light, casters, n_casters, caster, from, aim, u, upstream);

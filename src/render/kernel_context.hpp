@@ -10,7 +10,7 @@
 namespace vitrum {
 
 /// How passes are cut into launches. Pictures do not depend on it but where photons are sampled independently, which draw
-/// anew in each launch.
+/// anew in each launch. With footprints, the photons of a light and a caster are one launch.
 struct Launches {
   uint32_t photons = 1u << 16;  ///< a multiple of 1024; what so many leave fits a CPU's caches, until it is sorted
   uint32_t pixels = 1u << 16;   ///< a multiple of every WIDTH

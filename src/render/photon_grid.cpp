@@ -194,16 +194,17 @@ kernel::FootprintLimits PhotonGrid::footprint_limits() const {
   return limits;
 }
 
-void PhotonGrid::add(PhotonRuns& runs) {
+void PhotonGrid::add(const PhotonRuns& runs) {
   Device& device = context_.device;
   const uint32_t n_runs = static_cast<uint32_t>(runs.reports.size());
+  std::vector<kernel::PhotonRunData> reports = runs.reports;
   if (context_.features.footprints) {
     const kernel::FootprintLimits limits = footprint_limits();
     cl::Kernel count = context_.kernels.get("count_footprints"), place = context_.kernels.get("place_footprints");
     set_arguments(count, 0, n_runs, runs.length, runs.lattice, limits, map_.grid, buckets(), runs.photons, runs.landings,
                   runs.counts, runs.on_device);
     device.launch_singly("footprints", count, n_runs);
-    runs.reports = device.read(runs.on_device, 0, n_runs);
+    reports = device.read(runs.on_device, 0, n_runs);  // with the box around entries for that around photons
     make_room(runs);
     set_arguments(place, 0, n_runs, runs.length, runs.lattice, limits, map_.grid, buckets(), runs.photons, runs.landings,
                   places_, runs.on_device, map_.photons);
@@ -216,7 +217,7 @@ void PhotonGrid::add(PhotonRuns& runs) {
     device.launch_singly("sort", kernel, n_runs);
   }
 
-  for (const kernel::PhotonRunData& run : runs.reports)
+  for (const kernel::PhotonRunData& run : reports)
     for (size_t axis = 0; axis < 3; ++axis) {
       map_.low[axis] = std::min(map_.low[axis], run.low[axis]);
       map_.high[axis] = std::max(map_.high[axis], run.high[axis]);
@@ -230,7 +231,7 @@ void PhotonGrid::finish() {
   std::vector<kernel::BucketData> buckets;
   std::vector<uint32_t> by_size;
   for (uint32_t bucket = 0; bucket < counts.size(); ++bucket) {
-    buckets.push_back({room_[bucket].start * row_ / BUCKET_UNIT, sorted_stride(counts[bucket])});
+    buckets.push_back({room_[bucket].start / (BUCKET_UNIT / row_), sorted_stride(counts[bucket])});
     by_size.push_back(bucket);
   }
 

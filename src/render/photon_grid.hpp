@@ -44,7 +44,7 @@ class PhotonGrid {
   uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }
 
   /// Takes in the photons of a launch; with footprints, of all launches of a pair of light and caster.
-  void add(PhotonRuns& runs);
+  void add(const PhotonRuns& runs);
   /// Sorts what was taken in.
   void finish();
   /// Valid from finish until the next start.

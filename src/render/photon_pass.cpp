@@ -112,21 +112,21 @@ struct PhotonPass::State {
     return static_cast<uint64_t>(std::llround(pair.flux / flux * static_cast<double>(count)));
   }
 
-  /// The lattice of about `n` photons of a pair in a pass, none where it takes more than two dimensions or so few photons
-  /// that it would be none.
-  kernel::LatticeData lattice_of(uint32_t number, uint64_t pass, uint64_t n) const {
+  /// The lattice of about `n` photons of a pair in a pass; none for lights with an area, independent photons, or so few that
+  /// all would be at its edge.
+  kernel::LatticeData lattice_of(uint32_t number, uint64_t pass, uint32_t replicate, uint64_t n) const {
     if (!context.features.footprints || n < 64 || context.scene.photons.sampling == Sampling::independent ||
         context.data.lights[pairs[number].light].kind > LIGHT_DIRECTIONAL)
       return {};
     const auto log2_rows = static_cast<uint32_t>(std::lround(0.5 * std::log2(static_cast<double>(n))));
-    // From pass to pass the lattice moves evenly.
-    const uint64_t key = mix_bits(mix_bits(context.scene.render.seed, number), 0x1a771ce);
+    // Of each replicate by itself, and from pass to pass evenly.
+    const uint64_t key = mix_bits(mix_bits(context.scene.render.seed, replicate), number);
     const std::array<float, 2> step = r2_point(pass);
     const auto shift = [&](uint32_t axis) {
       const float start = static_cast<float>(mix_bits(key, axis) >> 40) * 0x1p-24f;
       return start + step[axis] - std::floor(start + step[axis]);
     };
-    return {0, static_cast<uint32_t>(n >> log2_rows), log2_rows, shift(0), shift(1)};
+    return {static_cast<uint32_t>(n >> log2_rows), log2_rows, shift(0), shift(1)};
   }
 
   /// Shoots photons [first, first + count) of pair `number`, each with the fraction `power` of its power, and leaves
@@ -187,7 +187,8 @@ struct PhotonPass::State {
   /// What the last launch stored.
   std::vector<cl_float8> photons_of_runs() const {
     const uint32_t n_runs = static_cast<uint32_t>(runs.reports.size());
-    const std::vector<float> fields = context.device.read(runs.photons, 0, kernel::photon_in_run(runs.length, n_runs, 0, runs.row));
+    const std::vector<float> fields =
+        context.device.read(runs.photons, 0, kernel::photon_in_run(runs.length, n_runs, 0, runs.row));
     std::vector<cl_float8> photons;
     for (uint32_t run = 0; run < n_runs; ++run)
       for (uint32_t i = 0; i < runs.reports[run].photons[OUTCOME_STORED]; ++i) {
@@ -247,7 +248,7 @@ void PhotonPass::run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_
   for (uint32_t p = 0; p < s.pairs.size(); ++p) {
     uint64_t n = std::max<uint64_t>(1, s.share(s.pairs[p], count));
     const uint64_t n_before = before == 0 ? 0 : s.share(s.pairs[p], before);
-    s.runs.lattice = s.lattice_of(p, pass, n);
+    s.runs.lattice = s.lattice_of(p, pass, replicate, n);
     if (s.runs.lattice.columns > 0) n = uint64_t{s.runs.lattice.columns} << s.runs.lattice.log2_rows;
     const uint64_t most_in_launch = s.context.features.footprints ? n : s.context.launches.photons;
     for (uint64_t first = 0; first < n;) {

@@ -120,7 +120,10 @@ std::string Features::build_options() const {
                         on("HAS_CONTACTS", contacts) + on("HAS_ABSORPTION", absorption) + on("HAS_TEXTURES", textures) +
                         on("HAS_HIGHLIGHTS", highlights) + on("HAS_DIRECT_LIGHT", lights) +
                         " -DCAUSTICS=" +
-                        (nearest_photons ? "CAUSTICS_NEAREST" : footprints ? "CAUSTICS_FOOTPRINTS" : caustics ? "CAUSTICS_WITHIN" : "CAUSTICS_NONE") +
+                        (nearest_photons ? "CAUSTICS_NEAREST"
+                         : footprints    ? "CAUSTICS_FOOTPRINTS"
+                         : caustics      ? "CAUSTICS_WITHIN"
+                                         : "CAUSTICS_NONE") +
                         " -DCAMERA_STACK=" + std::to_string(std::max(32u, std::bit_ceil(max_depth + 1))) +
                         " -DLIGHT_KINDS=" + std::to_string(light_kinds);
   if (constant_reflectance) options += printed(" -DCONSTANT_REFLECTANCE=%.9ef", *constant_reflectance);

@@ -76,7 +76,7 @@ inline Scene constant_reflectance(int size, uint64_t photons) {
 }
 
 /// All at once: meshes of glass that stand on the floor and in each other, an eye in a medium, textures, highlights,
-/// each kind of light. Photons are gathered within a radius or, `nearest`, by their number.
+/// each kind of light. Photons are gathered by the estimate.
 inline Scene everything(int size, uint64_t photons, PhotonEstimate estimate) {
   Scene scene = over_a_floor(size, photons);
   scene.textures = {checks(TextureFilter::bilinear, false), checks(TextureFilter::nearest, true)};

@@ -199,6 +199,8 @@ TEST_CASE("render and photon settings") {
        {"photons.nearest is more than can be searched for (64)", "automatic"}},
       {head + "[photons]\nestimate = \"nearest\"\nprogressive = true\n", 5,
        {"photons.progressive needs a radius that can shrink", "automatic"}},
+      {head + "[photons]\nestimate = \"footprints\"\nprogressive = true\n", 5,
+       {"photons.progressive needs a radius that can shrink", "photons.count"}},
       {head + "[photons]\nestimate = \"radios\"\n", 4, {"did you mean 'radius'?"}},
       {head + "[photons]\nmax_depth = 1000000\n", 4, {"out of range"}},
   });

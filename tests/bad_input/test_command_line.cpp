@@ -153,6 +153,8 @@ TEST_CASE("bad view") {
   check_refused(one + Words{"--view", "bias"}, "--view bias", "one sample a pixel", "take at least --samples 2");
   check_refused(render + Words{"--quiet", "--view", "bias", "--set", "photons.estimate=nearest"}, "--view bias", "k nearest photons",
                 "take photons.estimate");
+  check_refused(render + Words{"--quiet", "--view", "bias", "--set", "photons.estimate=footprints"}, "--view bias", "footprints",
+                "take photons.estimate");
   CHECK(folder.entries() == 0);
 }
 

@@ -47,10 +47,7 @@ class Gatherer {
     // As a pass does: room is made for what a few photons promise.
     grid.start(std::span(places).first(std::min<size_t>(places.size(), 1000)), places.size(), 0, 1.0);
     for (size_t first = 0; first < photons.size(); first += 5 * run_length)
-  {
-        PhotonRuns runs = runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid);
-        grid.add(runs);
-      }
+      grid.add(runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid));
     grid.finish();
     return run(within_, "within", grid.map(), queries);
   }
