@@ -1,4 +1,4 @@
-// The film on the device: planes of sums over samples, plane p of pixel i at [p * stride + i].
+// The film on the device: planes of sums over samples, plane p of the pixel in slot i at [p * stride + i].
 #ifndef VITRUM_FILM_H
 #define VITRUM_FILM_H
 
@@ -9,6 +9,9 @@
 #define FILM_NORMAL 10         // 3 floats: shading normal
 #define FILM_DEPTH 13          // [m]
 #define FILM_PLANES 14
+
+// Slots that have the same number of samples; a multiple of every WIDTH.
+#define SLOT_GROUP 16u
 
 // Rays traced, and of all estimates of irradiance the sums of k and of k (k - 1), k being the number of photons in one; as
 // low and high half.

@@ -3,6 +3,7 @@
 // A work-item minds WIDTH neighbouring pixels. Where glass splits their rays, the packet of reflected rays waits on a
 // stack of its own while the refracted ones are followed. So nothing depends on timing, and samples may be dealt out to
 // launches in any way: a pixel's shares are added up in the same order.
+// Pixels stand in slots, in any order, so that those that get many samples can be neighbours. The film is by slot.
 #include "film.h"
 #include "gather.h"
 #include "sampler.h"
@@ -90,8 +91,8 @@ FUNCTION void store_film3(__global float* film, uint plane, uint stride, uint i,
 
 BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits limits,
                   __global const CameraData* camera_data, __global const CameraSample* samples,
-                  const uint first_sample, const uint last_sample, const uint jitter, const uint i,
-                  const uint last_pixel, const uint eye_media, const uint n_lights, const uint first_hits,
+                  const uint first_sample, const uint last_sample, const uint jitter, const Uint pixels, const uint i,
+                  const uint last_slot, const uint eye_media, const uint n_lights, const uint first_hits,
                   const uint film_stride, __global float* restrict film, __global uint* restrict counts) {
 #if CAUSTICS != CAUSTICS_NONE
   Vec3 caustics = load_film3(film, FILM_CAUSTICS, film_stride, i);
@@ -105,8 +106,8 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
 
   CameraRays waiting[CAMERA_STACK];
   for (uint s = first_sample; s < last_sample; ++s) {
-    waiting[0] = camera_rays(camera_data, &samples[s], jitter, eye_media, LANES + i);
-    waiting[0].active = lanes_below(i, last_pixel);
+    waiting[0] = camera_rays(camera_data, &samples[s], jitter, eye_media, pixels);
+    waiting[0].active = lanes_below(i, last_slot);
     uint n_waiting = 1;
     while (n_waiting > 0) {
       CameraRays camera = waiting[--n_waiting];
@@ -168,19 +169,22 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
 #endif
 }
 
-// Samples [first_sample, last_sample) of pixels [first_pixel, last_pixel); first_pixel is a multiple of WIDTH, and the
-// film has room for whole packets. `eye_media`: the stack at the eye. `first_hits`: 1: albedo, normal and depth are
-// wanted.
+// Samples [first_sample, last_sample) of the pixels in slots [first_slot, last_slot), counted from the first of their own
+// half of `samples`; SLOT_GROUP neighbours take as many of them as `allotted` says. first_slot is a multiple of WIDTH, and
+// slots and film have room for whole packets. `eye_media`: the stack at the eye. `first_hits`: 1: albedo, normal and depth
+// are wanted.
 KERNEL void camera(SCENE_PARAMETERS, __global const CameraData* camera_data, __global const CameraSample* samples,
-                   const uint first_sample, const uint last_sample, const uint jitter, const uint first_pixel,
-                   const uint last_pixel, const uint max_depth, const float min_weight, const float eye_index,
+                   __global const uint* pixel_of_slot, __global const uint* allotted, const uint second_half,
+                   const uint first_sample, const uint last_sample, const uint jitter, const uint first_slot,
+                   const uint last_slot, const uint max_depth, const float min_weight, const float eye_index,
                    const uint eye_media, const uint n_lights, const uint first_hits PHOTON_MAP_PARAMETERS,
                    const uint film_stride, __global float* film, __global uint* counts) {
-  const uint i = first_pixel + get_global_id(0) * WIDTH;
-  if (i >= last_pixel) return;
+  const uint i = first_slot + get_global_id(0) * WIDTH;
+  if (i >= last_slot) return;
+  const uint own = allotted[i / SLOT_GROUP];
   const Scene scene = SCENE;
   const PhotonMap map = PHOTON_MAP;
   const CameraLimits limits = {max_depth, min_weight, eye_index};
-  trace_pixels(scene, map, limits, camera_data, samples, first_sample, last_sample, jitter, i, last_pixel, eye_media,
-               n_lights, first_hits, film_stride, film, counts);
+  trace_pixels(scene, map, limits, camera_data, samples + second_half * own, first_sample, min(last_sample, own), jitter,
+               LOAD(pixel_of_slot, i), i, last_slot, eye_media, n_lights, first_hits, film_stride, film, counts);
 }

@@ -6,6 +6,7 @@
 #include "core/printed.hpp"
 #include "device/scene_data.hpp"
 #include "render/photon_pass.hpp"
+#include "render/rounds.hpp"
 #include "scene/features.hpp"
 #include "scene/textures.hpp"
 
@@ -55,8 +56,12 @@ void run_info(const SceneArguments& arguments) {
   const Camera& camera = scene.camera;
   std::printf("camera     pinhole at %s m, looks at %s m, %.6g degrees high\n", text_of(camera.eye).c_str(),
               text_of(camera.look_at).c_str(), camera.vertical_fov);
-  std::printf("picture    %d x %d pixels, %s each\n", scene.film.width, scene.film.height,
-              counted(static_cast<size_t>(scene.render.samples), "sample").c_str());
+  // As many samples and photons as a target takes are not known before.
+  const bool by_rounds = scene.render.target_error > 0.0 || scene.render.time_limit > 0.0;
+  std::string sampling = by_rounds ? "sampled" : counted(static_cast<size_t>(scene.render.samples), "sample") + " each";
+  if (scene.render.target_error > 0.0) sampling += printed(" to a relative error of %g", scene.render.target_error);
+  if (scene.render.time_limit > 0.0) sampling += printed(" for %g s at most", scene.render.time_limit);
+  std::printf("picture    %d x %d pixels, %s\n", scene.film.width, scene.film.height, sampling.c_str());
   std::printf("background %s W/(m2 sr)\n", text_of(scene.background).c_str());
   std::printf("%s, %s\n", counted(scene.shapes.size(), "shape").c_str(),
               counted(triangle_count(scene), "triangle").c_str());
@@ -75,8 +80,9 @@ void run_info(const SceneArguments& arguments) {
     std::printf("  %-16s %s\n", light.name.c_str(), light_text(light).c_str());
   std::printf("media      %zu of 255\n", data.media.size() - 1);
   if (features.caustics)
-    std::printf("photons    %llu, aimed at what refracts or mirrors: %s\n",
-                static_cast<unsigned long long>(scene.photons.count), counted(data.casters.size(), "shape").c_str());
+    std::printf("photons    %s, aimed at what refracts or mirrors: %s\n",
+                by_rounds ? "as many as it takes" : std::to_string(scene.photons.count).c_str(),
+                counted(data.casters.size(), "shape").c_str());
   std::printf("features   %s\n", features.names().c_str());
   std::printf("kernels   ");
   for (const std::string& stage : stages_for(features)) std::printf(" %s", stage.c_str());
@@ -97,7 +103,8 @@ void run_info(const SceneArguments& arguments) {
     const double floats = features.footprints ? (2.0 + 6.0) * FOOTPRINT_ROW
                                               : PHOTON_ROW + (features.nearest_photons ? PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0
                                                                                        : double{PHOTON_ROW});
-    double photons = std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
+    double photons = by_rounds ? static_cast<double>(photons_in_memory)
+                               : std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
     if (features.footprints) photons = std::min(photons, static_cast<double>(most_footprints));
     std::printf(", photon map up to %.1f MiB", photons * (sizeof(float) * floats) / 0x1p20);
   }

@@ -11,6 +11,7 @@
 #include "commands/scene_arguments.hpp"
 #include "commands/usage.hpp"
 #include "core/log.hpp"
+#include "core/printed.hpp"
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
 #include "film/images.hpp"
@@ -72,11 +73,24 @@ std::vector<View> views_of_names(const std::vector<std::string>& names) {
   return views;
 }
 
+/// "relative error .021 (95 %: .019 to .024) after 5 rounds, 120 samples a pixel and 2000000 photons".
+std::string rounds_text(const RoundsResult& rounds) {
+  const RelativeError& error = rounds.error;
+  const std::string reason = rounds.end == RoundsResult::End::target ? ""
+                             : rounds.end == RoundsResult::End::time ? "time is up: "
+                                                                     : "there is no room for smaller footprints: ";
+  const std::string bias = error.bias_known ? "" : ", and a bias by the photons that one round does not tell";
+  return reason + printed("relative error %.3g (%.0f %%: %.3g to %.3g)%s after %d round%s, %.3g samples a pixel and %llu photons",
+                          error.value, 100.0 * RoundsResult::confidence, error.low, error.high, bias.c_str(), rounds.rounds,
+                          rounds.rounds == 1 ? "" : "s", rounds.samples, static_cast<unsigned long long>(rounds.photons));
+}
+
 void run_render(const RenderArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   start_image_process();
   set_quiet(arguments.quiet);
   RenderOptions options;
+  options.start = start;
   options.kernels = arguments.kernels;
   if (!arguments.views.empty()) options.views = views_of_names(arguments.views);
   const auto threads = static_cast<unsigned>(whole_number("--threads", arguments.threads, 0, most_threads));
@@ -101,6 +115,8 @@ void run_render(const RenderArguments& arguments) {
   result.seconds["load"] = load_seconds;
   result.seconds["first pixels"] = std::chrono::duration<double>(result.first_pixels - start).count();
 
+  if (result.rounds) note(rounds_text(*result.rounds));
+
   const auto write_start = std::chrono::steady_clock::now();
   std::vector<PictureLayer> layers;
   for (View view : options.views) layers.push_back(layer_of(result, view));
@@ -108,7 +124,7 @@ void run_render(const RenderArguments& arguments) {
       {"version", version()},
       {"scene", scene.file},
       {"seed", std::to_string(scene.render.seed)},
-      {"samples", std::to_string(scene.render.samples)},
+      {"samples", printed("%g", result.samples)},
       {"photons", std::to_string(result.photons.photons_shot)},
       {"device", device->info().name},
   };

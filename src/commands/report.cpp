@@ -56,6 +56,22 @@ ordered_json photon_estimate(const Scene& scene, const RenderResult& result) {
   return json;
 }
 
+/// How rendering to an error or a time limit went.
+ordered_json rounds_json(const Scene& scene, const RoundsResult& rounds) {
+  using End = RoundsResult::End;
+  const RelativeError& error = rounds.error;
+  const auto limit = [](double value) { return value > 0.0 ? ordered_json(value) : ordered_json(nullptr); };
+  return {{"ended_by", rounds.end == End::target ? "target_error" : rounds.end == End::time ? "time_limit" : "most footprints"},
+          {"target_error", limit(scene.render.target_error)},
+          {"time_limit_s", limit(scene.render.time_limit)},
+          {"rounds", rounds.rounds},
+          {"relative_error", error.value},
+          {"interval", {error.low, error.high}},
+          {"confidence", RoundsResult::confidence},
+          {"noise", error.noise},
+          {"bias", error.bias_known ? ordered_json(error.bias) : ordered_json(nullptr)}};
+}
+
 const char* name_of(Sampling sampling) {
   return sampling == Sampling::independent ? "independent" : "low-discrepancy";
 }
@@ -78,7 +94,7 @@ std::string render_report(const Scene& scene, const Device& device, const Render
   json["scene"] = scene.file;
   json["settings"] = {
       {"size", {scene.film.width, scene.film.height}},
-      {"samples", scene.render.samples},
+      {"samples", result.samples},
       {"passes", result.passes},
       {"seed", scene.render.seed},
       {"sampling", name_of(scene.render.sampling)},
@@ -90,7 +106,7 @@ std::string render_report(const Scene& scene, const Device& device, const Render
   else
     json["settings"]["reflectance"] = "fresnel";
   if (result.features.caustics)
-    json["settings"]["photons"] = {{"count", scene.photons.count},
+    json["settings"]["photons"] = {{"count", result.rounds ? result.rounds->photons : scene.photons.count},
                                    {"sampling", name_of(scene.photons.sampling)},
                                    {"estimate", name_of(scene.photons.estimate)},
                                    {"radius_m", result.photon_radius},
@@ -133,6 +149,7 @@ std::string render_report(const Scene& scene, const Device& device, const Render
     json["standard_error"] = summary(error, result.film.width());
     json["standard_error"]["degrees_of_freedom"] = result.film.replicates() - 1;
   }
+  if (result.rounds) json["rounds"] = rounds_json(scene, *result.rounds);
   json["rejected_values"] = result.rejected_values;
   json["memory_bytes"] = result.memory;
   return json.dump(2) + "\n";

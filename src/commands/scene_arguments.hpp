@@ -13,9 +13,9 @@ namespace vitrum {
 struct SceneArguments {
   std::string scene;
   std::vector<std::string> sets;      ///< --set KEY=VALUE
-  std::optional<std::string> samples, photons, seed, size;
+  std::optional<std::string> samples, photons, target_error, time_limit, seed, size;
 
-  /// Adds SCENE, --set, --samples, --photons, --seed and --size to a command.
+  /// Adds SCENE, --set, --samples, --photons, --target-error, --time-limit, --seed and --size to a command.
   void add_to(CLI::App& command);
   /// Reads the scene with everything that the command line says about it. --samples and its like are short for --set,
   /// and come after it. Throws Error.

@@ -38,6 +38,27 @@ double beta_fraction(double a, double b, double x, double rest) {
 
 double normal_two_sided(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
+double fisher_above(double f, double a, double b) {
+  assert(f >= 0.0 && a > 0.0 && b > 0.0);
+  // I_x(b / 2, a / 2) with x = b / (b + a f), written so that neither x nor 1 - x loses digits.
+  const double ratio = a / b * f;
+  const double x = 1.0 / (1.0 + ratio), rest = ratio / (1.0 + ratio);
+  if (rest == 0.0) return 1.0;
+  if (x == 0.0) return 0.0;
+  return x < (0.5 * b + 1.0) / (0.5 * (a + b) + 2.0) ? beta_fraction(0.5 * b, 0.5 * a, x, rest)
+                                                      : 1.0 - beta_fraction(0.5 * a, 0.5 * b, rest, x);
+}
+
+double fisher_limit(double p, double a, double b) {
+  assert(p > 0.0 && p < 1.0);
+  double low = -1000.0, high = 1000.0;
+  for (int i = 0; i < 70; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fisher_above(std::exp2(middle), a, b) > p ? low : high) = middle;
+  }
+  return std::exp2(0.5 * (low + high));
+}
+
 double student_two_sided(double t, double degrees) {
   assert(degrees > 0.0);
   if (std::isnan(t)) return t;

@@ -20,6 +20,13 @@ double student_two_sided(double t, double degrees);
 /// The t > 0 with student_two_sided(t, degrees) = p, for p in (0, 1): where an alarm of that probability begins.
 double student_limit(double p, double degrees);
 
+/// Probability that a variable of Fisher's distribution, the ratio of two independent chi-squared variables over their
+/// degrees of freedom, a > 0 above and b > 0 below, is at least f >= 0. DLMF 8.17, Abramowitz and Stegun 26.6.2.
+double fisher_above(double f, double a, double b);
+
+/// The f > 0 with fisher_above(f, a, b) = p, for p in (0, 1).
+double fisher_limit(double p, double a, double b);
+
 /// Probability that the least of the p-values of `tests` >= 1 tests is `p` or less if there is nothing to find:
 /// 1 - (1 - p)^tests, exact for independent tests. Where the tests depend on each other, as pixels do that share their
 /// photons, it is an upper bound for two-sided tests of normal values, whatever their correlations:

@@ -118,17 +118,18 @@ PhotonGrid::Room PhotonGrid::new_room(uint32_t rows) {
   return room;
 }
 
-void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass, double share) {
+void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, const PhotonPassPlan& plan) {
   const PhotonSettings& settings = context_.scene.photons;
-  if (pass == 0 || !settings.progressive) {
+  samples_ = plan.samples;
+  if (plan.pass == 0 || !settings.progressive) {
     // Footprints are as large as photons of one pass are apart.
     const bool by_pass = settings.progressive || context_.features.footprints;
-    const double wanted = by_pass ? settings.nearest : settings.nearest * share;
+    const double wanted = by_pass ? settings.nearest : settings.nearest * plan.share;
     first_radius_ = settings.estimate != PhotonEstimate::fixed_radius
                         ? static_cast<double>(automatic_radius(sample, expected, wanted))
                         : settings.radius;
   }
-  map_.radius = static_cast<float>(settings.progressive ? first_radius_ * std::sqrt(progressive_area(pass)) : first_radius_);
+  map_.radius = static_cast<float>(settings.progressive ? first_radius_ * std::sqrt(progressive_area(plan.pass)) : first_radius_);
   // A footprint is listed in each cell that it reaches into.
   if (context_.features.footprints) expected *= entries_of_footprint;
   map_.grid = choose_grid(sample, expected, map_.radius);
@@ -188,7 +189,7 @@ kernel::FootprintLimits PhotonGrid::footprint_limits() const {
   const kernel::CameraData& camera = context_.data.camera;
   kernel::FootprintLimits limits{};
   std::copy(std::begin(camera.eye), std::end(camera.eye), limits.eye);
-  limits.sharpness = camera.step_x / std::sqrt(static_cast<float>(context_.scene.render.samples));
+  limits.sharpness = camera.step_x / std::sqrt(static_cast<float>(samples_));
   // Two sides reach to the farthest corner of a tent.
   limits.largest = map_.radius / 2.0f;
   return limits;

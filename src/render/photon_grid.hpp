@@ -34,11 +34,10 @@ class PhotonGrid {
  public:
   explicit PhotonGrid(const KernelContext& context);
 
-  /// Chooses radius and grid from `sample`, places of some photons [m], for pass number `pass` of the picture, from 0,
-  /// which stores about `expected`. It has the fraction `share` of all photons of the picture: an automatic radius takes in
-  /// as many of all, so that the number of passes does not make it wider. A progressive radius is that of pass 0, where
-  /// an automatic one takes in as many of that pass, shrunk.
-  void start(std::span<const glm::vec3> sample, uint64_t expected, uint64_t pass, double share);
+  /// Chooses radius and grid from `sample`, places of some photons [m], for a pass that stores about `expected`. An
+  /// automatic radius takes in the pass's share of photons.nearest; a progressive one is that of pass 0, where an
+  /// automatic one takes in as many of that pass, shrunk.
+  void start(std::span<const glm::vec3> sample, uint64_t expected, const PhotonPassPlan& plan);
   const kernel::GridData& grid() const { return map_.grid; }
   /// Buckets of cells, by which the photons of a launch are to be counted.
   uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }
@@ -67,6 +66,7 @@ class PhotonGrid {
   const uint32_t row_;          ///< floats of an entry before it is sorted
   PhotonMap map_;
   double first_radius_ = 0.0;   ///< [m], before it shrinks
+  int samples_ = 1;             ///< of a pixel
   std::vector<Room> room_;      ///< by bucket
   uint32_t used_rows_ = 0;
   Buffer<uint32_t> places_, next_of_cell_, tasks_, first_task_, first_scratch_, counts_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -65,19 +64,19 @@ double aimed_flux(const SceneData& data, const kernel::LightData& light, const k
 
 struct PhotonPass::State {
   KernelContext context;
-  uint64_t capacity;
+  uint64_t room = 0;            // photons of a pass
   std::vector<Pair> pairs;
   double flux = 0.0;            // of all pairs
   Buffer<kernel::CasterData> casters_of_directional;  // none of them unbounded
   Buffer<kernel::SequenceData> sequences;
   cl::Kernel kernel;
   PhotonRuns runs;
-  uint32_t most_runs;           // of a launch
+  uint32_t most_runs = 0;       // of a launch
   PhotonBalance balance;
   PhotonGrid grid;
   PhotonMap tree;               // instead of the grid where the k nearest are gathered
 
-  State(const KernelContext& c, uint64_t largest) : context(c), capacity(largest), grid(c) {
+  explicit State(const KernelContext& c) : context(c), grid(c) {
     Device& device = context.device;
     const SceneData& data = context.data;
     std::vector<kernel::CasterData> bounded = data.casters;
@@ -99,10 +98,21 @@ struct PhotonPass::State {
     // A GPU wants many work-items.
     runs.length = device.info().is_cpu ? 1024 : 64;
     runs.row = context.features.footprints ? FOOTPRINT_ROW : PHOTON_ROW;
+  }
+
+  /// Makes room for passes of `count` photons.
+  void reserve(uint64_t count) {
+    if (count <= room) return;
+    room = count;
+    Device& device = context.device;
     // Footprints want all photons of a pair at once.
-    const uint64_t most_at_once = context.features.footprints ? largest : context.launches.photons;
-    most_runs = static_cast<uint32_t>((std::max<uint64_t>(most_at_once, pilot_size(largest)) + runs.length - 1) / runs.length);
-    runs.landings = device.allocate<float>(context.features.footprints ? 4 * largest : 1, "photons in flight");
+    const bool footprints = context.features.footprints;
+    const uint64_t at_once = std::max<uint64_t>(footprints ? room : context.launches.photons, pilot_size(room));
+    const auto needed = static_cast<uint32_t>((at_once + runs.length - 1) / runs.length);
+    if (runs.landings.size() == 0 || footprints)
+      runs.landings = device.allocate<float>(footprints ? 4 * room : 1, "photons in flight");
+    if (needed <= most_runs) return;
+    most_runs = needed;
     runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0, runs.row), "photons in flight");
     runs.on_device = device.allocate<kernel::PhotonRunData>(most_runs, "photons in flight");
   }
@@ -152,15 +162,15 @@ struct PhotonPass::State {
     runs.reports = device.read(runs.on_device, 0, n_runs);
   }
 
-  /// Chooses the grid for a pass of `count` photons by a few of each pair, which are not counted.
-  void start_grid(uint64_t pass, uint32_t replicate, uint64_t count) {
-    const uint64_t pilot = pilot_size(count);
+  /// Chooses the grid for a pass by a few photons of each pair, which are not counted.
+  void start_grid(const PhotonPassPlan& plan) {
+    const uint64_t count = plan.count, pilot = pilot_size(count);
     std::vector<std::vector<glm::vec3>> places;
     std::vector<double> stored;                 // of each pair in the pass
     for (uint32_t p = 0; p < pairs.size(); ++p) {
       const uint64_t n = std::max<uint64_t>(1, share(pairs[p], count));
       const uint32_t shot = static_cast<uint32_t>(std::min(n, pilot));
-      shoot(p, replicate, 0, shot, 1.0 / static_cast<double>(n), {}, 1, {});
+      shoot(p, plan.replicate, 0, shot, 1.0 / static_cast<double>(n), {}, 1, {});
       places.emplace_back();
       for (const cl_float8& photon : photons_of_runs()) places.back().push_back({photon.s[0], photon.s[1], photon.s[2]});
       // Their order hangs on the device's width, which the radius must not: a random one, by where they are.
@@ -180,8 +190,7 @@ struct PhotonPass::State {
       const size_t taken = std::min(wanted, places[p].size());
       sample.insert(sample.end(), places[p].begin(), places[p].begin() + static_cast<std::ptrdiff_t>(taken));
     }
-    grid.start(sample, static_cast<uint64_t>(expected), pass,
-               static_cast<double>(count) / static_cast<double>(context.scene.photons.count));
+    grid.start(sample, static_cast<uint64_t>(expected), plan);
   }
 
   /// What the last launch stored.
@@ -222,8 +231,7 @@ struct PhotonPass::State {
   }
 };
 
-PhotonPass::PhotonPass(const KernelContext& context, uint64_t largest_pass)
-    : state_(new State(context, largest_pass)) {}
+PhotonPass::PhotonPass(const KernelContext& context) : state_(new State(context)) {}
 PhotonPass::~PhotonPass() = default;
 
 uint64_t PhotonPass::capacity(const Device& device, const Features& features) {
@@ -235,12 +243,12 @@ uint64_t PhotonPass::capacity(const Device& device, const Features& features) {
   return std::min<uint64_t>(static_cast<uint64_t>(bytes / row), 1u << 28);
 }
 
-void PhotonPass::run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_t count,
-                     const std::function<void(double)>& progress) {
+void PhotonPass::run(const PhotonPassPlan& plan, const std::function<void(double)>& progress) {
   State& s = *state_;
-  assert(count <= s.capacity);
+  s.reserve(plan.count);
+  const auto [pass, replicate, before, count, share, samples] = plan;
   const bool nearest = s.context.features.nearest_photons;
-  if (!nearest) s.start_grid(pass, replicate, count);
+  if (!nearest) s.start_grid(plan);
   for (const kernel::LightData& light : s.context.data.lights)
     s.balance.not_aimed += total_power(s.context.data, light);
   std::vector<cl_float8> photons;  // for the tree

@@ -65,19 +65,27 @@ unsigned set_map_arguments(cl::Kernel& kernel, unsigned first, const PhotonMap& 
 /// Photons of a pass with footprints, which all wait in memory until their neighbours are known.
 inline constexpr uint64_t most_footprints = 1u << 20;
 
-/// Traces photons pass by pass; keeps its buffers between passes.
+/// What a pass is to do.
+struct PhotonPassPlan {
+  uint64_t pass = 0;            ///< its number in the picture, from 0: a progressive radius goes by it
+  uint32_t replicate = 0;
+  uint64_t before = 0;          ///< photons that this replicate has emitted already
+  uint64_t count = 0;           ///< to emit
+  double share = 1.0;           ///< of the photons of the picture, so that an automatic radius is no wider for many passes
+  int samples = 1;              ///< of a pixel in the picture: footprints are no smaller than what lies between them
+};
+
+/// Traces photons pass by pass; keeps its buffers between passes, and has room for the largest so far.
 class PhotonPass {
  public:
-  /// Emits at most `largest_pass` photons in one pass.
-  PhotonPass(const KernelContext& context, uint64_t largest_pass);
+  explicit PhotonPass(const KernelContext& context);
   ~PhotonPass();
 
   /// Photons that a single pass can hold on this device.
   static uint64_t capacity(const Device& device, const Features& features);
 
-  /// Emits `count` photons of `replicate`, of which `before` have been emitted already, as pass number `pass` of the
-  /// picture, from 0 and one after the other: a progressive radius goes by it. Reports the fraction done.
-  void run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_t count, const std::function<void(double)>& progress);
+  /// Emits the photons of a pass; passes come one after the other. Reports the fraction done.
+  void run(const PhotonPassPlan& plan, const std::function<void(double)>& progress);
 
   /// What the last run left. Valid until the next.
   const PhotonMap& map() const;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <future>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,25 +14,12 @@
 #include "render/camera_pass.hpp"
 #include "render/photon_pass.hpp"
 #include "render/radiance_limit.hpp"
+#include "render/rounds.hpp"
+#include "render/view.hpp"
 #include "scene/features.hpp"
 #include "scene/scene.hpp"
 
 namespace vitrum {
-
-/// What a picture shows.
-enum class View {
-  beauty,
-  photons,                      ///< the photon map as white dots
-  caustics,                     ///< what of the beauty the photon map gives
-  albedo, normal, depth,        ///< of what the eye meets first
-  error,                        ///< standard error of each value of the beauty, from the scatter of the replicates
-  cut,                          ///< radiance that the limits of depth and weight took, at most (radiance_limit.hpp)
-  bias,                         ///< by how much the radius of the photon estimate makes the caustics too bright
-};
-
-/// Name of a view, as after --view; and the view of a name. The latter throws Error for a name that is none.
-const char* view_name(View view);
-View view_of_name(const std::string& name);
 
 struct RenderOptions {
   std::vector<View> views = {View::beauty};
@@ -39,6 +27,8 @@ struct RenderOptions {
   Launches launches;
   /// Ready when the scene's textures have their texels (scene/textures.hpp), or has failed; none: they have them.
   std::shared_future<void> textures_ready;
+  /// From when on RenderSettings::time_limit counts.
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
 /// What a render gave and what it took.
@@ -55,6 +45,8 @@ struct RenderResult {
   std::chrono::steady_clock::time_point first_pixels;  ///< when the first of them were there
   std::map<std::string, uint64_t> memory;   ///< device buffers by purpose [bytes]
   int passes = 0;
+  double samples = 0.0;         ///< of a pixel, mean
+  std::optional<RoundsResult> rounds;       ///< where RenderSettings::target_error or time_limit asked for them
 
   /// Standard error of each value of the beauty, from the scatter of the replicates; empty of a single one.
   std::vector<double> standard_error() const;
@@ -65,7 +57,8 @@ struct RenderResult {
 
 /// Renders `scene` on `device`. The views error and bias take a pass for each replicate, if there are samples for so many.
 /// The scene's textures' texels may be decoded by another thread meanwhile. The same scene, passes and seed give the same
-/// bits, whatever the threads and the group size. Throws Error.
+/// bits, whatever the threads and the group size; where a time limit ended it, with as many rounds. Throws
+/// Error.
 RenderResult render(const Scene& scene, Device& device, const RenderOptions& options);
 
 }  // namespace vitrum

@@ -195,6 +195,9 @@ struct RenderSettings {
   int max_depth = 20;                       ///< surfaces that a camera path may meet
   double min_weight = 1e-4;                 ///< a branch of less than this weight is cut
   Sampling sampling = Sampling::low_discrepancy;
+  double target_error = 0.0;                ///< relative error of the picture at which to stop; 0: none
+  double time_limit = 0.0;                  ///< [s] after which to stop; 0: none. With either, samples, passes and photons.count
+                                            ///< are chosen on the way
 };
 
 /// The most photons that PhotonEstimate::nearest can search for.

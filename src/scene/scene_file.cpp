@@ -94,7 +94,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
   scene.film = read_film(root.table("film"));
   scene.background = read_background(root.table("background"));
   scene.render = read_render_settings(root.table("render"));
-  scene.photons = read_photon_settings(root.table("photons"), context);
+  scene.photons = read_photon_settings(root.table("photons"), context, scene.render);
   scene.lights = read_lights(root, context);
 
   // Everything in the scene file is checked before the first mesh is read.

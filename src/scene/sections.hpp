@@ -39,8 +39,8 @@ FilmSettings read_film(const TomlTable& table);
 Spectrum read_background(const TomlTable& table);
 /// [render]
 RenderSettings read_render_settings(const TomlTable& table);
-/// [photons]
-PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& context);
+/// [photons]; `render` says how the picture is sampled.
+PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& context, const RenderSettings& render);
 /// [light.NAME]; lengths in metres, names as in the file.
 std::vector<Light> read_lights(const TomlTable& root, const FileContext& context);
 /// [material.NAME], as it was said.

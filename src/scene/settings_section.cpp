@@ -13,7 +13,7 @@ constexpr int deepest_path = 1000;
 
 RenderSettings read_render_settings(const TomlTable& table) {
   table.check_keys({}, {"samples", "passes", "seed", "reflectance", "caustics", "lights", "textures", "max_depth",
-                        "min_weight", "sampling"});
+                        "min_weight", "sampling", "target_error", "time_limit"});
   RenderSettings settings;
   table.integer("samples", settings.samples, 1, 1 << 24);
   table.integer("passes", settings.passes, 1, 1 << 24);
@@ -34,10 +34,12 @@ RenderSettings read_render_settings(const TomlTable& table) {
   table.integer("max_depth", settings.max_depth, 1, deepest_path);
   table.number("min_weight", settings.min_weight, {0, 1});
   table.choice("sampling", settings.sampling, samplings);
+  table.number("target_error", settings.target_error, {1e-6, 1});
+  table.number("time_limit", settings.time_limit, {1e-3, 1e9});
   return settings;
 }
 
-PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& context) {
+PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& context, const RenderSettings& render) {
   table.check_keys({}, {"count", "sampling", "estimate", "radius", "nearest", "max_radius", "progressive", "max_depth"});
   constexpr uint64_t most_photons = 1'000'000'000'000;
   PhotonSettings settings;
@@ -61,6 +63,14 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
   if (settings.progressive && settings.estimate == PhotonEstimate::footprints)
     table.fail("progressive", "needs a radius that can shrink, which footprints do not have",
                "leave it out: footprints shrink as photons.count grows");
+  if (render.target_error > 0.0 || render.time_limit > 0.0) {
+    const std::string problem = std::string("does not go with render.") + (render.target_error > 0.0 ? "target_error" : "time_limit");
+    if (settings.estimate == PhotonEstimate::fixed_radius || settings.estimate == PhotonEstimate::nearest)
+      table.fail("estimate", problem + ": its error does not fall with the number of photons",
+                 "use photons.estimate = \"automatic\" or \"footprints\" with it");
+    if (settings.progressive)
+      table.fail("progressive", problem + ", which lets the radius shrink as the error wants it", "leave it out");
+  }
   table.integer("max_depth", settings.max_depth, 1, deepest_path);
   return settings;
 }

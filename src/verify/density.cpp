@@ -72,7 +72,7 @@ class Gathering {
   Gathering(const CheckContext& context, const Scene& scene, uint32_t places, uint64_t count)
       : device_(context.device),
         shot_(with_fixed_radius(scene)),
-        run_(shot_, context.device, count, context.kernels),
+        run_(shot_, context.device, context.kernels),
         kernel_(device_.build("checks/gather.cl", kernel_source(context.kernels, {"checks/gather.cl"}),
                               "-cl-std=CL1.2" + scene_features(scene).build_options()),
                 "gather_at"),

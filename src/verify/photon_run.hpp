@@ -12,7 +12,7 @@ namespace vitrum {
 /// A scene on a device, ready to shoot photons.
 class PhotonRun {
  public:
-  PhotonRun(const Scene& scene, Device& device, uint64_t largest_pass, const KernelFiles& files = {})
+  PhotonRun(const Scene& scene, Device& device, const KernelFiles& files = {})
       : scene_(scene),
         device_(device),
         features_(scene_features(scene)),
@@ -20,11 +20,13 @@ class PhotonRun {
         tree_(features_.mesh ? build_tree(data_.tree_triangles) : Tree{}),
         kernels_(device, files, photon_stages_for(features_), features_.build_options()),
         device_scene_(upload(device, data_, features_, features_.mesh ? &tree_ : nullptr)),
-        pass_(KernelContext{device_, kernels_, scene_, data_, device_scene_, features_}, largest_pass) {}
+        pass_(KernelContext{device_, kernels_, scene_, data_, device_scene_, features_}) {}
 
   /// Shoots `count` photons of `replicate`, behind `before` of them, as pass number `pass` of a picture.
   void run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_t count) {
-    pass_.run(pass, replicate, before, count, [](double) {});
+    pass_.run({pass, replicate, before, count, static_cast<double>(count) / static_cast<double>(scene_.photons.count),
+               scene_.render.samples},
+              [](double) {});
   }
   const PhotonMap& map() const { return pass_.map(); }
 

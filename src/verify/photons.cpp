@@ -253,7 +253,7 @@ class PhotonChecks {
   /// Shoots all replicates and checks their balance, and that of all of them together.
   Landed shoot(Scene scene, uint64_t count, const std::vector<double>& within, const std::string& what) {
     scene.render.seed = runs_++;
-    PhotonRun run(scene, context_.device, count, context_.kernels);
+    PhotonRun run(scene, context_.device, context_.kernels);
     Landed landed;
     landed.within.resize(within.size());
     PhotonBalance before;

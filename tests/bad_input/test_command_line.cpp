@@ -132,6 +132,13 @@ TEST_CASE("bad command line") {
   check_refused(render + Words{"--samples", "0"}, "--samples 0", "out of range", "it must be between 1");
   check_refused(render + Words{"--samples", "1e3"}, "--samples 1e3", "no whole number", "write digits only");
   check_refused(render + Words{"--photons", "-1"}, "--photons -1", "no whole number", "write digits only");
+  check_refused(render + Words{"--target-error", "x"}, "--target-error x", "this is no number", "write one");
+  check_refused(render + Words{"--target-error", "2"}, "--target-error 2", "out of range", "it must be between");
+  check_refused(render + Words{"--time-limit", "1e999"}, "--time-limit 1e999", "this is no number", "write one");
+  check_refused(render + Words{"--target-error", "0.1", "--samples", "4"}, "--target-error 0.1", "does not go with --samples",
+                "leave one of them out");
+  check_refused(render + Words{"--time-limit", "9", "--photons", "4"}, "--time-limit 9", "does not go with --photons",
+                "leave one of them out");
   check_refused(render + Words{"--seed", "9223372036854775808"}, "--seed 9223372036854775808", "out of range", "write");
   check_refused(render + Words{"--size", "640"}, "--size 640", "this is no size", "write width and height");
   check_refused(render + Words{"--size", "0x4"}, "--size 0x4", "out of range", "it must be between 1");
@@ -343,6 +350,26 @@ TEST_CASE("the report is complete") {
   CHECK_FALSE(report.contains("standard_error"));  // of a single pass
   CHECK(report["memory_bytes"]["film"] > 0);
   CHECK(report["memory_bytes"]["photon map"] > 0);
+}
+
+TEST_CASE("a picture to a target error says how far it came") {
+  const TemporaryFolder folder;
+  const std::string report = folder / "report.json";
+  const Ended run = vitrum_run({"render", default_scene, "-o", folder / "out.png", "--size", "24x24", "--target-error", "0.3",
+                                "--report", report});
+  CHECK_MESSAGE(run.code == 0, run.err);
+  CHECK(run.err.find("relative error ") != std::string::npos);
+  const auto json = nlohmann::json::parse(file_bytes(report));
+  const auto& rounds = json["rounds"];
+  CHECK(rounds["ended_by"] == "target_error");
+  CHECK(rounds["target_error"] == 0.3);
+  CHECK(rounds["time_limit_s"].is_null());
+  CHECK(rounds["relative_error"] <= 0.3);
+  CHECK(rounds["interval"][0] <= rounds["relative_error"]);
+  CHECK(rounds["interval"][1] >= rounds["relative_error"]);
+  CHECK(json["settings"]["samples"] >= 8.0);
+  CHECK(json["rays"]["camera"] == json["settings"]["samples"].get<double>() * 24 * 24);
+  CHECK(json["settings"]["photons"]["count"] >= 1024);
 }
 
 TEST_CASE("the seed alone decides the picture") {

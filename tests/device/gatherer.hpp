@@ -45,7 +45,7 @@ class Gatherer {
     std::vector<glm::vec3> places;
     for (const cl_float8& p : photons) places.push_back({p.s[0], p.s[1], p.s[2]});
     // As a pass does: room is made for what a few photons promise.
-    grid.start(std::span(places).first(std::min<size_t>(places.size(), 1000)), places.size(), 0, 1.0);
+    grid.start(std::span(places).first(std::min<size_t>(places.size(), 1000)), places.size(), {});
     for (size_t first = 0; first < photons.size(); first += 5 * run_length)
       grid.add(runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid));
     grid.finish();

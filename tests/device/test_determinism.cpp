@@ -21,7 +21,7 @@ struct Case {
   bool knows_bias = true;
 };
 
-/// Exact shapes; meshes with an area light and independent sampling; several passes of each.
+/// Exact shapes; meshes with an area light and independent sampling; several passes of each; as many as a target error takes.
 const std::vector<Case> cases = {
     {"default_scene", {"film.size=[60, 44]", "render.samples=3", "photons.count=300_000"}},
     {"default_scene", {"film.size=[33, 20]", "render.samples=4", "render.passes=2", "photons.count=70_001",
@@ -31,6 +31,8 @@ const std::vector<Case> cases = {
     {"cornell_glass", {"film.size=[48, 37]", "render.samples=2", "photons.count=100_000"}},
     {"default_scene", {"film.size=[30, 22]", "render.samples=4", "render.passes=2", "photons.count=20_000",
                        "photons.estimate='footprints'"}, false},
+    {"default_scene", {"film.size=[30, 22]", "render.target_error=0.2"}},
+    {"default_scene", {"film.size=[30, 22]", "render.target_error=0.2", "photons.estimate='footprints'"}, false},
 };
 
 std::string scene_path(const Case& c) { return std::string(VITRUM_SOURCE_DIR "/models/") + c.model + "/scene.toml"; }

@@ -236,7 +236,7 @@ TEST_CASE("room for a pass is within what capacity counts on, however photons sp
     PhotonGrid grid({device, kernels, scene, data, device_scene, features});
     std::vector<vec3> sample;
     for (uint32_t i = 0; i < pilot_size(count); ++i) sample.push_back(random.in_box(vec3(-1, 0, -1), vec3(1, 0, 1)));
-    grid.start(sample, count, 0, 1.0);
+    grid.start(sample, count, {});
     CHECK(static_cast<double>(grid.map().photons.size()) <= largest_row_share * PHOTON_ROW * static_cast<double>(count));
   }
 }

@@ -26,7 +26,7 @@ Places sorted_places(const std::vector<cl_float8>& photons) {
 TEST_CASE("the passes of a replicate shoot the photons of one sequence, whatever launches and passes hold") {
   const Scene scene = ball_over_plane(1.5, Spectrum(0.0), 4.0);
   Device device;
-  PhotonRun run(scene, device, 100'000);
+  PhotonRun run(scene, device);
   const Places whole = sorted_places(run.shoot(0, 100'000));  // more than a launch
   std::vector<cl_float8> parts = run.shoot(0, 30'000);
   const std::vector<cl_float8> rest = run.shoot(0, 70'000, 30'000);
@@ -47,7 +47,7 @@ TEST_CASE("a pass that stores all of its photons takes no more memory for each t
   const Scene scene = ball_over_plane(1.0, Spectrum(0.0), INFINITY);
   Device device;
   constexpr uint64_t count = 300'000;
-  PhotonRun run(scene, device, count);
+  PhotonRun run(scene, device);
   run.run(0, 0, 0, count);
   REQUIRE(run.map().count == count);
   const double bytes = static_cast<double>(run.map().photons.size() * sizeof(float)) / count;

@@ -60,7 +60,7 @@ TEST_CASE("caustic_plate: ten million photons encircle the flux of all orders wi
   for (const std::string kd : {"material.glass.Kd=[1, 1, 1]", three_glasses}) {
     const bool absorbs = kd == three_glasses;
     const Scene scene = plate({kd});
-    PhotonRun run(scene, device, count);
+    PhotonRun run(scene, device);
     const std::vector<cl_float8> photons = run.shoot(0, count);
     const Encircled encircled(photons);
     for (size_t k = 0; k < radii.size(); ++k)
@@ -110,7 +110,7 @@ TEST_CASE("caustic_plate: independent photons deviate from the encircled flux as
   constexpr uint64_t count = 250'000;
   constexpr uint32_t seeds = 12;
   const Scene scene = plate({three_glasses, "photons.sampling='independent'"});
-  PhotonRun run(scene, device, count);
+  PhotonRun run(scene, device);
   // Two-sided, at 1 in 1000 for all tests together: Sidak 1967.
   constexpr double tests = seeds * radii.size() * sigma_a.size();
   const double level = 1 - std::pow(1 - 1e-3, 1 / tests);

@@ -64,7 +64,7 @@ TEST_CASE("footprints: their parts carry the power that was stored") {
   Device device;
   Scene scene = CausticPlate().scene;
   scene.photons.estimate = PhotonEstimate::footprints;
-  PhotonRun run(scene, device, 20000);
+  PhotonRun run(scene, device);
   double power = 0;
   for (const cl_float8& photon : run.shoot(0, 20000)) power += static_cast<double>(photon.s[PHOTON_POWER]);
   CHECK(std::abs(power / run.balance().stored.x - 1) < 1e-5);

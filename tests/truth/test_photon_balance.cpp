@@ -18,7 +18,7 @@ TEST_CASE("the balance of power holds where photons often change between inside 
   Scene scene = ball_over_plane(2.4, Spectrum(0.0), INFINITY);
   scene.render.seed = 7;
   Device device;
-  PhotonRun run(scene, device, 500'000);
+  PhotonRun run(scene, device);
   run.shoot(0, 500'000);
   const PhotonBalance& b = run.balance();
   // The same floats are added up in another order: by Kahan's bound each sum is within two roundings of the whole.
@@ -52,7 +52,7 @@ double solid_angle(double radius, double d) { return 2 * std::numbers::pi * (1 -
 void check_power_shot(const Scene& scene, double truth) {
   constexpr uint32_t replicates = 16;
   Device device;
-  PhotonRun run(scene, device, 20'000);
+  PhotonRun run(scene, device);
   double sum = 0, squares = 0, before = 0;
   for (uint32_t replicate = 0; replicate < replicates; ++replicate) {
     run.shoot(replicate, 20'000);
@@ -93,7 +93,7 @@ TEST_CASE("photons of a lamp that is far away fill their narrow cone evenly") {
   add_floor(scene, -1002);
   Device device;
   constexpr uint64_t count = 20'000;
-  const std::vector<cl_float8> photons = PhotonRun(scene, device, count).shoot(0, count);
+  const std::vector<cl_float8> photons = PhotonRun(scene, device).shoot(0, count);
   CHECK(photons.size() == count);
   for (const double part : {0.1, 0.3, 0.7}) {
     const auto within = std::count_if(photons.begin(), photons.end(), [&](const cl_float8& p) {
@@ -110,7 +110,7 @@ TEST_CASE("photons that miss what they are aimed at are direct light, which the 
   add(scene, Triangle{{-0.2, -1, -0.1}, {0, -1, 0.2}, {0.2, -1, -0.1}, {}, {}, {}}, mirror);
   add_floor(scene, -2);
   Device device;
-  PhotonRun run(scene, device, 20'000);
+  PhotonRun run(scene, device);
   CHECK(run.shoot(0, 20'000).empty());
   CHECK(run.balance().photons_direct > 2'000);
   CHECK(run.balance().photons_lost > 2'000);
@@ -126,7 +126,7 @@ TEST_CASE("photons meet max_depth surfaces and no more") {
   for (const int max_depth : {1, 2, 3, 4}) {
     CAPTURE(max_depth);
     scene.photons.max_depth = max_depth;
-    PhotonRun run(scene, device, count);
+    PhotonRun run(scene, device);
     CHECK(run.shoot(0, count).size() == (max_depth < 3 ? 0 : count));
     CHECK(run.balance().photons_cut == (max_depth < 3 ? count : 0));
     CHECK(run.balance().surfaces_met == static_cast<uint64_t>(std::min(max_depth, 3)) * count);

@@ -87,3 +87,17 @@ TEST_CASE("Sidak's correction") {
     CHECK(relative(sidak(sidak_level(1e-3, tests), tests), 1e-3) < 1e-12);
   }
 }
+
+TEST_CASE("Fisher's distribution is that of the closed forms, of Student's, and of the tables") {
+  for (double f = 1e-6; f < 1e6; f *= 7.0) {
+    CAPTURE(f);
+    // Two degrees above: (1 + 2 f / b)^(-b / 2). The square of Student's variable has one.
+    for (const double b : {1.0, 2.0, 7.0, 30.0}) CHECK(relative(fisher_above(f, 2, b), std::pow(1 + 2 * f / b, -b / 2)) < 1e-9);
+    CHECK(relative(fisher_above(f, 1, 7), student_two_sided(std::sqrt(f), 7)) < 1e-9);
+  }
+  // Tables of the 5 % and 1 % points.
+  CHECK(relative(fisher_limit(0.05, 4, 10), 3.4780) < 1e-4);
+  CHECK(relative(fisher_limit(0.01, 10, 20), 3.3682) < 1e-4);
+  CHECK(relative(fisher_limit(0.05, 1000, 3000), 1 / fisher_limit(0.95, 3000, 1000)) < 1e-8);
+  CHECK(fisher_above(0.0, 3, 5) == 1.0);
+}

@@ -1,0 +1,75 @@
+#pragma once
+// The passes that a picture is made of: photons, and camera rays that gather them.
+
+#include <chrono>
+#include <future>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/device_scene.hpp"
+#include "render/camera_pass.hpp"
+#include "render/photon_pass.hpp"
+#include "render/view.hpp"
+
+namespace vitrum {
+
+/// Sums of samples, by the film's plane that they belong to.
+struct PlaneSums {
+  const char* name = "";
+  int channels = 3;
+  std::vector<float> values;    ///< width * height * channels, interleaved
+};
+
+/// Runs the passes of one picture, one after the other.
+class Passes {
+ public:
+  /// `textures_ready`: when the scene's textures have their texels, or invalid where they have them.
+  Passes(const KernelContext& context, DeviceScene& device_scene, const std::vector<View>& views,
+         std::shared_future<void> textures_ready);
+
+  /// Whether there is light that photons are to bring.
+  bool has_photons() const { return photons_ != nullptr; }
+  /// Samples of a pixel that are summed in float on the device before they are handed over.
+  static constexpr uint32_t samples_per_batch = 32;
+
+  /// Shoots the photons that the next camera passes gather. Reports the fraction done.
+  void shoot(const PhotonPassPlan& plan, const std::function<void(double)>& progress);
+  /// Starts a pass of camera rays: as CameraPass::start.
+  void start(uint32_t replicate, uint32_t first, SampleCounts counts, uint32_t parts, bool is_only);
+  /// Samples [first, last) of each pixel, at most samples_per_batch of them: as CameraPass::run. Returns their sums in all
+  /// planes that the views want.
+  std::vector<PlaneSums> trace(uint32_t part, uint32_t first, uint32_t last, const std::function<void(double)>& progress);
+
+  /// White dots where photons of the last shot lie, for View::photons; empty if that is not wanted.
+  std::vector<float> dots() const;
+
+  /// Of all passes so far. Radius: its sum over the shots [m].
+  const PhotonBalance& balance() const { return photons_->balance(); }
+  double radius_sum() const { return radius_sum_; }
+  CameraCounts counts() const { return camera_.counts(); }
+  /// CPU time of the process, all threads, in "photon" and "camera" passes [s].
+  const std::map<std::string, double>& cpu_seconds() const { return cpu_seconds_; }
+  /// When the first pixels were there.
+  std::chrono::steady_clock::time_point first_pixels() const { return first_pixels_; }
+
+ private:
+  bool wants(View view) const;
+  const PhotonMap* map() const { return photons_ ? &photons_->map() : nullptr; }
+
+  KernelContext context_;
+  DeviceScene& device_scene_;
+  std::vector<View> views_;
+  std::shared_future<void> textures_ready_;
+  bool textures_there_ = false;
+  CameraPass camera_;
+  std::unique_ptr<CameraPass> narrow_camera_;  ///< gathers within a smaller radius, for View::bias
+  std::unique_ptr<PhotonPass> photons_;
+  double radius_sum_ = 0.0;
+  std::map<std::string, double> cpu_seconds_;
+  std::chrono::steady_clock::time_point first_pixels_{};
+};
+
+}  // namespace vitrum

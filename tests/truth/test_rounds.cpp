@@ -1,0 +1,120 @@
+// Rendering to an error: the true one lies in the interval that is told as often as it claims.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "verify/caustic_plate.hpp"
+
+namespace vitrum {
+namespace {
+
+constexpr int seeds = 100;
+
+/// Root mean squared difference over all values, relative to the mean of the truth.
+double relative_error(const std::vector<double>& picture, const std::vector<double>& truth) {
+  double squares = 0.0, mean = 0.0;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    squares += (picture[i] - truth[i]) * (picture[i] - truth[i]);
+    mean += truth[i];
+  }
+  return std::sqrt(squares * static_cast<double>(truth.size())) / mean;
+}
+
+struct Coverage {
+  int within = 0, met = 0;      ///< intervals that hold the truth; pictures whose true error is below the target
+  double told = 0.0, truth = 0.0;  ///< means
+
+  void add(const RoundsResult& rounds, double error, double target) {
+    CHECK(rounds.end == RoundsResult::End::target);
+    CHECK(rounds.error.value <= target);
+    within += rounds.error.low <= error && error <= rounds.error.high;
+    met += error <= target;
+    told += rounds.error.value;
+    truth += error;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("rounds: the error of a picture by camera rays alone is what it is told to be") {
+  Device device;
+  Scene scene;
+  scene.camera = {CameraType::pinhole, {0.9, 0.7, 0}, {0, 0.2, 0}, {0, 1, 0}, 40};
+  scene.film.width = scene.film.height = 24;
+  scene.background = Spectrum(0.3);
+  scene.materials = {surface(Surface::opaque, 0.8), glass(1.5)};
+  add(scene, Plane{{0, 0, 0}, {0, 1, 0}, {}, {}}, 0);
+  add(scene, Sphere{{0, 0.3, 0}, 0.2}, 1);
+  scene.lights.push_back({"lamp", {}, PointLight{{0.2, 1, 0.1}, Spectrum(1.0)}});
+  scene.render.caustics = false;
+  scene.render.samples = 1 << 14;
+  const std::vector<double> truth = render(scene, device, {}).film.mean("radiance");
+  scene.render.target_error = 0.01;
+  Coverage coverage;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    scene.render.seed = static_cast<uint64_t>(seed);
+    const RenderResult result = render(scene, device, {});
+    coverage.add(*result.rounds, relative_error(result.film.mean("radiance"), truth), scene.render.target_error);
+    CHECK(result.rounds->error.bias == 0.0);
+  }
+  MESSAGE("within " << coverage.within << ", met " << coverage.met << ", told " << coverage.told / seeds << ", true "
+                    << coverage.truth / seeds);
+  // 95 are expected, and fewer than 88 by chance once in a thousand times.
+  CHECK(coverage.within >= 88);
+  CHECK(std::abs(coverage.told / coverage.truth - 1.0) < 0.1);
+}
+
+TEST_CASE("rounds: the error of a caustic, noise and bias, is within what it is told to be") {
+  Device device;
+  const CausticPlate plate;
+  RenderOptions options;
+  options.views = {View::caustics};
+  for (const PhotonEstimate estimate : {PhotonEstimate::automatic, PhotonEstimate::footprints}) {
+    CAPTURE(estimate == PhotonEstimate::footprints);
+    Scene scene = plate.scene;
+    scene.render.lights = false;
+    scene.photons.estimate = estimate;
+    scene.render.target_error = 0.15;
+    Coverage coverage;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      scene.render.seed = static_cast<uint64_t>(seed);
+      const RenderResult result = render(scene, device, options);
+      coverage.add(*result.rounds, relative_error(CausticPlate::irradiance(result), plate.truth()), scene.render.target_error);
+    }
+    MESSAGE("within " << coverage.within << ", met " << coverage.met << ", told " << coverage.told / seeds << ", true "
+                      << coverage.truth / seeds);
+    // What is not known of the bias is on the safe side.
+    CHECK(coverage.within >= 88);
+    CHECK(coverage.met >= 88);
+    CHECK(coverage.told > coverage.truth);
+  }
+}
+
+TEST_CASE("rounds: a time limit ends them, with a picture and what is known of its error") {
+  Device device;
+  Scene scene = CausticPlate().scene;
+  scene.render.time_limit = 0.001;  // less than a round takes
+  const RenderResult one = render(scene, device, {});
+  CHECK(one.rounds->end == RoundsResult::End::time);
+  CHECK(one.rounds->rounds == 1);
+  CHECK(!one.rounds->error.bias_known);
+  CHECK(one.rounds->error.noise > 0.0);
+  CHECK(one.film.mean("radiance").size() == 3 * 128 * 128);
+  // Of both limits the first met counts.
+  scene.render.time_limit = 1e6;
+  scene.render.target_error = 0.5;
+  CHECK(render(scene, device, {}).rounds->end == RoundsResult::End::target);
+}
+
+TEST_CASE("rounds: footprints that no memory would make small enough end them") {
+  Device device;
+  Scene scene = CausticPlate().scene;
+  scene.render.lights = false;
+  scene.film.width = scene.film.height = 16;
+  scene.photons.estimate = PhotonEstimate::footprints;
+  scene.render.target_error = 1e-4;
+  CHECK(render(scene, device, {}).rounds->end == RoundsResult::End::footprints);
+}
+
+}  // namespace vitrum
