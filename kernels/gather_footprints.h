@@ -7,6 +7,7 @@
 FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sums* sums) {
   const GridData grid = map->grid;
   const float max_off_plane = FOOTPRINT_OFF_PLANE * map->radius;
+  const float area = map->radius * map->radius;  // so that no square overflows
   const float inverse_cell = level ? grid.inverse_cell / LEVEL_RATIO : grid.inverse_cell;
   const uint cell = cell_of_level(grid, level, cell_coordinate(p.x, inverse_cell), cell_coordinate(p.y, inverse_cell),
                                   cell_coordinate(p.z, inverse_cell));
@@ -22,14 +23,26 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
     const float8 dz = vload8(0, entries + PHOTON_Z * stride + i) - p.z;
     __global const float* u = entries + FOOTPRINT_U * stride + i;
     __global const float* v = entries + FOOTPRINT_V * stride + i;
-    const float8 tent_u = 1.0f - fabs(dx * vload8(0, u) + dy * vload8(0, u + stride) + dz * vload8(0, u + 2 * stride));
-    const float8 tent_v = 1.0f - fabs(dx * vload8(0, v) + dy * vload8(0, v + stride) + dz * vload8(0, v + 2 * stride));
+    const float8 ux = vload8(0, u);
+    const float8 uy = vload8(0, u + stride);
+    const float8 uz = vload8(0, u + 2 * stride);
+    const float8 vx = vload8(0, v);
+    const float8 vy = vload8(0, v + stride);
+    const float8 vz = vload8(0, v + 2 * stride);
+    const float8 tent_u = 1.0f - fabs(dx * ux + dy * uy + dz * uz);
+    const float8 tent_v = 1.0f - fabs(dx * vx + dy * vy + dz * vz);
     const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7) + i;
     int8 counts = (tent_u > 0.0f) & (tent_v > 0.0f) & (lane < last);
     if (!any(counts)) continue;
+    // Off its own plane too: nothing else but the cells that list it tells how high a tent is.
+    const float8 x = area * (uy * vz - uz * vy);
+    const float8 y = area * (uz * vx - ux * vz);
+    const float8 z = area * (ux * vy - uy * vx);
+    const float8 height = dx * x + dy * y + dz * z;
     const uint8 packed = as_uint8(vload8(0, entries + PHOTON_DIRECTION * stride + i));
     counts &= ((packed >> LEVEL_SHIFT & 1u) == level) & came_to_front(as_int8(packed), n) &
-              (distance_off_plane(dx, dy, dz, n) <= max_off_plane);
+              (distance_off_plane(dx, dy, dz, n) <= max_off_plane) &
+              (height * height <= max_off_plane * max_off_plane * (x * x + y * y + z * z));
     add_weighted(entries, stride, i, counts, tent_u * tent_v, sums);
   }
 }

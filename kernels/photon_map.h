@@ -160,7 +160,7 @@ FUNCTION Uint packed_direction(const Vec3 d) {
 // A photon counts for a surface if it came to the surface's front, and lies within this share of the radius off its
 // plane: on curved surfaces and in corners, the rest lies on something else.
 #define PLANE_SHARE 0.25f
-// The same for footprints, whose cells it makes thicker.
+// The same for footprints, of both planes, whose cells it makes thicker.
 #define FOOTPRINT_OFF_PLANE 0.125f
 
 FUNCTION int8 came_to_front(int8 packed, float3 n) {

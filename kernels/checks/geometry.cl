@@ -30,7 +30,9 @@ FUNCTION RayPacket aimed_rays(__global const float* edges, const uint n_edges, _
   }
   const Vec3 up = subtract3(target, centre);
   const Float size = length3(up);
-  const Vec3 slanted = along3(up, aim->slant * size * unit_float(hash32(bits + 6)), unit_vector(bits + 7));
+  Vec3 aside = unit_vector(bits + 7);
+  if (aim->tangential) aside = along3(aside, -dot3(aside, up) / (size * size), up);
+  const Vec3 slanted = along3(up, aim->slant * size * unit_float(hash32(bits + 6)), aside);
   RayPacket rays;
   rays.origin = aim->distance > 0.0f ? along3(target, aim->distance, normalize3(slanted))
                                      : along3(centre, 0.3f * size * unit_float(hash32(bits + 6)), unit_vector(bits + 7));

@@ -8,6 +8,7 @@ typedef struct {
   float distance;              // [m] from the point aimed at; 0: from inside
   float slant;                 // how far rays from outside come from aside: .7: within 45 degrees, 5: mostly grazing, 50: all
   float spread;                // [m], edges: rays pass them by at most so much; else the radius of the ball aimed at
+  uint tangential;             // 1: aside is along the tangent, so that a large slant makes all of them graze
   uint crossings;              // of the surface that a chain may have: 2 straight through a convex mesh
   uint edges;                  // 1: edges, every eighth time their ends
   uint seed;

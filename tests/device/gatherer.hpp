@@ -28,6 +28,31 @@ inline cl_float8 photon(glm::vec3 p, glm::vec3 direction, glm::vec3 power) {
   return {{p.x, p.y, p.z, std::bit_cast<float>(packed), power.x, power.y, power.z, 0}};
 }
 
+/// kernels/checks/gather.cl for these features.
+inline cl::Kernel gather_kernel(const Device& device, const KernelFiles& files, const Features& features) {
+  return cl::Kernel(device.build("checks/gather.cl", kernel_source(files, {"checks/gather.cl"}),
+                                 "-cl-std=CL1.2" + features.build_options()),
+                    "gather_at");
+}
+
+/// Irradiance at each query [W/m2].
+inline std::vector<glm::vec3> gathered_at(Device& device, cl::Kernel kernel, const char* stage, const PhotonMap& map,
+                                          const Scene& scene, const std::vector<Query>& queries) {
+  const uint32_t count = static_cast<uint32_t>(queries.size());
+  std::vector<float> places;
+  for (const Query& query : queries)
+    for (const glm::vec3& v : {query.position, query.normal}) places.insert(places.end(), {v.x, v.y, v.z});
+  const Buffer<float> on_device = device.upload(places, "queries");
+  const Buffer<float> irradiance = device.allocate<float>(size_t{3} * count, "queries");
+  set_arguments(kernel, 0, count, on_device);
+  set_arguments(kernel, set_map_arguments(kernel, 2, map, scene), irradiance);
+  device.launch(stage, kernel, count);
+  const std::vector<float> values = device.read(irradiance, 0, size_t{3} * count);
+  std::vector<glm::vec3> found(count);
+  for (size_t i = 0; i < count; ++i) found[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return found;
+}
+
 /// The device with the kernels that sort and gather.
 class Gatherer {
  public:
@@ -35,8 +60,8 @@ class Gatherer {
       : device_("", group_size),
         kernels_(device_, files, {"photon_sort"}, Features{}.build_options()),
         context_{device_, kernels_, scene_, data_, device_scene_, features_},
-        within_(gather_kernel(files, false)),
-        nearest_(gather_kernel(files, true)) {}
+        within_(gather_kernel(device_, files, features_of(false))),
+        nearest_(gather_kernel(device_, files, features_of(true))) {}
 
   std::vector<glm::vec3> within(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, float radius) {
     scene_.photons.estimate = PhotonEstimate::fixed_radius;
@@ -67,13 +92,11 @@ class Gatherer {
  private:
   static constexpr size_t run_length = 1000;
 
-  cl::Kernel gather_kernel(const KernelFiles& files, bool nearest) const {
+  static Features features_of(bool nearest) {
     Features features;
     features.caustics = true;
     features.nearest_photons = nearest;
-    return cl::Kernel(device_.build("checks/gather.cl", kernel_source(files, {"checks/gather.cl"}),
-                                    "-cl-std=CL1.2" + features.build_options()),
-                      "gather_at");
+    return features;
   }
 
   /// Photons as a launch leaves them, in runs that are nearly full.
@@ -110,23 +133,11 @@ class Gatherer {
   }
 
   /// Radiance of the queries.
-  std::vector<glm::vec3> run(cl::Kernel& kernel, const char* stage, const PhotonMap& map,
+  std::vector<glm::vec3> run(const cl::Kernel& kernel, const char* stage, const PhotonMap& map,
                              const std::vector<Query>& queries) {
-    const uint32_t count = static_cast<uint32_t>(queries.size());
-    std::vector<float> places;
-    for (const Query& query : queries)
-      for (const glm::vec3& v : {query.position, query.normal}) places.insert(places.end(), {v.x, v.y, v.z});
-    const Buffer<float> on_device = device_.upload(places, "queries");
-    const Buffer<float> irradiance = device_.allocate<float>(size_t{3} * count, "queries");
-    set_arguments(kernel, 0, count, on_device);
-    set_arguments(kernel, set_map_arguments(kernel, 2, map, scene_), irradiance);
-    device_.launch(stage, kernel, count);
-    const std::vector<float> values = device_.read(irradiance, 0, size_t{3} * count);
-    std::vector<glm::vec3> radiance(count);
-    for (size_t i = 0; i < count; ++i)
-      radiance[i] = queries[i].diffuse * glm::vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]) *
-                    std::numbers::inv_pi_v<float>;
-    return radiance;
+    std::vector<glm::vec3> values = gathered_at(device_, kernel, stage, map, scene_, queries);
+    for (size_t i = 0; i < values.size(); ++i) values[i] *= queries[i].diffuse * std::numbers::inv_pi_v<float>;
+    return values;
   }
 
   Device device_;

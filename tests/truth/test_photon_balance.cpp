@@ -132,3 +132,22 @@ TEST_CASE("photons meet max_depth surfaces and no more") {
     CHECK(run.balance().surfaces_met == static_cast<uint64_t>(std::min(max_depth, 3)) * count);
   }
 }
+
+// What branches off inside a mesh must know on which side of its facet it is: else its media are "mended", and it finds
+// itself twice in the glass that it leaves.
+TEST_CASE("light that is thrown back and forth in a slab comes out of it, where media may be stacked") {
+  Scene scene = lamp();
+  scene.lights = {{"sun", {}, DirectionalLight{{0, -1, 0}, Spectrum(1.0)}}};
+  scene.materials[air] = glass(2.4);
+  add_floor(scene, -2);
+  add(scene, box({-0.5f, -0.2f, -0.5f}, {0.5f, 0.2f, 0.5f}, air));
+  // Too small to matter.
+  add(scene, Sphere{{2, 0, 0}, 1e-3}, air);
+  Device device;
+  constexpr uint64_t count = 200'000;
+  PhotonRun run(scene, device, count);
+  run.run(0, 0, 0, count);
+  const double R = std::pow(1.4 / 3.4, 2), through = (1 - R) / (1 + R);
+  MESSAGE("through the slab " << run.balance().stored.x << ", truth " << through);
+  CHECK(std::abs(run.balance().stored.x / through - 1) < 0.005);
+}

@@ -1,0 +1,30 @@
+// kernels/footprint.h by itself, for the tests: each lane of a work-item a photon that arrived. Reads `in`, writes
+// `out`: fields of `count` floats that follow each other. `count` is a multiple of WIDTH.
+#include "footprint.h"
+
+#define INPUT(field) LOAD(in + (field) * count, i)
+#define OUTPUT(field, value) STORE(out + (field) * count, i, value)
+
+KERNEL void footprints(const LatticeData lattice, const FootprintLimits limits, __global const float* landings,
+                       __global const float* in, __global float* out, const uint count) {
+  const uint i = get_global_id(0) * WIDTH;
+  if (i >= count) return;
+  const Footprint f = footprint_of(lattice, landings, limits, AS_UINT(INPUT(0)), INPUT(1),
+                                   make_vec3(INPUT(2), INPUT(3), INPUT(4)), make_vec3(INPUT(5), INPUT(6), INPUT(7)));
+  OUTPUT(0, f.side_u.x);
+  OUTPUT(1, f.side_u.y);
+  OUTPUT(2, f.side_u.z);
+  OUTPUT(3, f.side_v.x);
+  OUTPUT(4, f.side_v.y);
+  OUTPUT(5, f.side_v.z);
+  OUTPUT(6, f.across_u.x);
+  OUTPUT(7, f.across_u.y);
+  OUTPUT(8, f.across_u.z);
+  OUTPUT(9, f.across_v.x);
+  OUTPUT(10, f.across_v.y);
+  OUTPUT(11, f.across_v.z);
+  OUTPUT(12, f.area);
+  OUTPUT(13, TO_FLOAT(AS_INT(f.parts_u)));
+  OUTPUT(14, TO_FLOAT(AS_INT(f.parts_v)));
+  OUTPUT(15, TO_FLOAT(AS_INT(f.level)));
+}
