@@ -297,7 +297,7 @@ TEST_CASE("footprints: what is gathered is the sum over all that cover a place, 
   scene.photons.nearest = 8;
   Device device;
   constexpr uint32_t count = 512;
-  PhotonRun run(scene, device, count);
+  PhotonRun run(scene, device);
   run.run(0, 0, 0, count);
   const PhotonMap& map = run.map();
   const std::vector<Entry> entries = entries_of(device, map);

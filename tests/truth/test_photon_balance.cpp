@@ -145,7 +145,7 @@ TEST_CASE("light that is thrown back and forth in a slab comes out of it, where 
   add(scene, Sphere{{2, 0, 0}, 1e-3}, air);
   Device device;
   constexpr uint64_t count = 200'000;
-  PhotonRun run(scene, device, count);
+  PhotonRun run(scene, device);
   run.run(0, 0, 0, count);
   const double R = std::pow(1.4 / 3.4, 2), through = (1 - R) / (1 + R);
   MESSAGE("through the slab " << run.balance().stored.x << ", truth " << through);

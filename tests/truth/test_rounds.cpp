@@ -70,6 +70,7 @@ TEST_CASE("rounds: the error of a caustic, noise and bias, is within what it is 
   const CausticPlate plate;
   RenderOptions options;
   options.views = {View::caustics};
+  // Half of the seeds each.
   for (const PhotonEstimate estimate : {PhotonEstimate::automatic, PhotonEstimate::footprints}) {
     CAPTURE(estimate == PhotonEstimate::footprints);
     Scene scene = plate.scene;
@@ -77,16 +78,16 @@ TEST_CASE("rounds: the error of a caustic, noise and bias, is within what it is 
     scene.photons.estimate = estimate;
     scene.render.target_error = 0.15;
     Coverage coverage;
-    for (int seed = 1; seed <= seeds; ++seed) {
+    for (int seed = 1; seed <= seeds / 2; ++seed) {
       scene.render.seed = static_cast<uint64_t>(seed);
       const RenderResult result = render(scene, device, options);
       coverage.add(*result.rounds, relative_error(CausticPlate::irradiance(result), plate.truth()), scene.render.target_error);
     }
-    MESSAGE("within " << coverage.within << ", met " << coverage.met << ", told " << coverage.told / seeds << ", true "
-                      << coverage.truth / seeds);
+    MESSAGE("within " << coverage.within << ", met " << coverage.met << ", told " << 2 * coverage.told / seeds << ", true "
+                      << 2 * coverage.truth / seeds);
     // What is not known of the bias is on the safe side.
-    CHECK(coverage.within >= 88);
-    CHECK(coverage.met >= 88);
+    CHECK(coverage.within >= 43);
+    CHECK(coverage.met >= 43);
     CHECK(coverage.told > coverage.truth);
   }
 }
