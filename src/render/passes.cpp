@@ -3,6 +3,8 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <numbers>
 #include <utility>
 
@@ -109,6 +111,50 @@ std::vector<PlaneSums> Passes::trace(uint32_t part, uint32_t first, uint32_t las
     sums.push_back({"bias", 3, std::move(bias)});
   }
   return sums;
+}
+
+HalvedPass Passes::trace_halves(uint32_t replicate, uint32_t first, const SampleCounts& counts,
+                                const std::function<void(double)>& progress) {
+  start(replicate, first, counts, 2, false);
+  std::vector<PlaneSums> halves[2];
+  for (uint32_t half = 0; half < 2; ++half)
+    for (uint32_t sample = 0; sample < counts.most(); sample += samples_per_noisy_batch) {
+      const uint32_t last = std::min(counts.most(), sample + samples_per_noisy_batch);
+      std::vector<PlaneSums> sums = trace(half, sample, last, [&](double done) {
+        progress(0.5 * (half + (sample + done * (last - sample)) / counts.most()));
+      });
+      if (halves[half].empty()) {
+        halves[half] = std::move(sums);
+        continue;
+      }
+      for (size_t plane = 0; plane < sums.size(); ++plane)
+        for (size_t i = 0; i < sums[plane].values.size(); ++i) halves[half][plane].values[i] += sums[plane].values[i];
+    }
+
+  const size_t pixels = counts.pixel_of_slot.size();
+  std::vector<float> inverse(pixels);  // of all samples
+  for (size_t slot = 0; slot < pixels; ++slot)
+    inverse[counts.pixel_of_slot[slot]] = 0.5f / static_cast<float>(counts.in_slot(slot));
+  HalvedPass pass;
+  pass.variance.assign(pixels, 0.0);
+  for (size_t plane = 0; plane < halves[0].size(); ++plane) {
+    PlaneSums& sums = halves[0][plane];
+    const std::vector<float>& rest = halves[1][plane].values;
+    const auto channels = static_cast<size_t>(sums.channels);
+    const bool is_radiance = std::strcmp(sums.name, "radiance") == 0;
+    for (size_t i = 0; i < sums.values.size(); ++i) {
+      const float share = inverse[i / channels];
+      // Half the difference of the halves' means is as far off as their mean is.
+      const double off = static_cast<double>(share) * (static_cast<double>(sums.values[i]) - static_cast<double>(rest[i]));
+      if (is_radiance && std::isfinite(off)) {
+        pass.variance[i / channels] += off * off / static_cast<double>(share);
+        pass.error += off * off / static_cast<double>(sums.values.size());
+      }
+      sums.values[i] = (sums.values[i] + rest[i]) * share;
+    }
+    pass.means.push_back(std::move(sums));
+  }
+  return pass;
 }
 
 }  // namespace vitrum

@@ -23,6 +23,13 @@ struct PlaneSums {
   std::vector<float> values;    ///< width * height * channels, interleaved
 };
 
+/// What a pass of camera rays in two halves gave, and how sure that is.
+struct HalvedPass {
+  std::vector<PlaneSums> means; ///< over each pixel's samples
+  std::vector<double> variance; ///< of one sample, by pixel, all channels together: by the difference of the halves
+  double error = 0.0;           ///< mean squared error of the radiance by camera rays, over all values
+};
+
 /// Runs the passes of one picture, one after the other.
 class Passes {
  public:
@@ -34,14 +41,20 @@ class Passes {
   bool has_photons() const { return photons_ != nullptr; }
   /// Samples of a pixel that are summed in float on the device before they are handed over.
   static constexpr uint32_t samples_per_batch = 32;
+  /// The same where some pixels get many, whose noise is far above what the sums are rounded by.
+  static constexpr uint32_t samples_per_noisy_batch = 256;
 
   /// Shoots the photons that the next camera passes gather. Reports the fraction done.
   void shoot(const PhotonPassPlan& plan, const std::function<void(double)>& progress);
   /// Starts a pass of camera rays: as CameraPass::start.
   void start(uint32_t replicate, uint32_t first, SampleCounts counts, uint32_t parts, bool is_only);
-  /// Samples [first, last) of each pixel, at most samples_per_batch of them: as CameraPass::run. Returns their sums in all
+  /// Samples [first, last) of each pixel, not many more than a batch: as CameraPass::run. Returns their sums in all
   /// planes that the views want.
   std::vector<PlaneSums> trace(uint32_t part, uint32_t first, uint32_t last, const std::function<void(double)>& progress);
+
+  /// A whole pass in two halves of `counts` each, which go on in the sequence of `replicate` from sample `first` on.
+  HalvedPass trace_halves(uint32_t replicate, uint32_t first, const SampleCounts& counts,
+                          const std::function<void(double)>& progress);
 
   /// White dots where photons of the last shot lie, for View::photons; empty if that is not wanted.
   std::vector<float> dots() const;

@@ -7,14 +7,39 @@
 #include "core/printed.hpp"
 #include "core/progress.hpp"
 #include "render/passes.hpp"
+#include "render/sample_allocation.hpp"
 
 namespace vitrum {
 namespace {
 
+constexpr uint32_t least_adaptive = 8;        // samples of a pixel in a pass
 constexpr uint64_t replicates_of_rounds = 4;  // fewer, longer sequences are more even; 4 tell the error of a whole picture
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A pass of about `samples` of a pixel: a quarter of them for all alike, and what these tell decides where the others go.
+/// As in rounds (rounds.hpp), each part has one weight in all pixels, the square of its cost. Returns the samples taken.
+double trace_adaptively(Passes& passes, uint64_t pass, uint32_t replicate, uint32_t first, uint32_t samples, int width,
+                        RenderResult& result, const std::function<void(double)>& progress) {
+  const auto pixels = static_cast<uint32_t>(width * result.film.height());
+  double taken = 0.0;
+  SampleCounts counts = SampleCounts::uniform(pixels, samples / 8);
+  for (const double begin : {0.0, 0.25}) {
+    HalvedPass part = passes.trace_halves(replicate, first, counts, [&](double d) {
+      progress(begin + (begin > 0.0 ? 0.75 : 0.25) * d);
+    });
+    const double per_pixel = 2.0 * static_cast<double>(counts.total()) / pixels;
+    taken += per_pixel;
+    for (PlaneSums& plane : part.means) {
+      for (float& value : plane.values) value *= static_cast<float>(per_pixel * per_pixel);
+      result.rejected_values += result.film.add(pass, plane.name, plane.channels, plane.values, per_pixel * per_pixel);
+    }
+    first += 2 * counts.most();
+    counts = SampleCounts::of(allot_samples(part.variance, width, 0.5 * (samples - per_pixel)));
+  }
+  return taken;
 }
 
 /// The passes of a picture whose samples and photons are given.
@@ -26,6 +51,7 @@ void run_fixed(const KernelContext& context, Passes& passes, uint64_t n_passes, 
   const auto pixels = static_cast<uint32_t>(scene.film.width) * static_cast<uint32_t>(scene.film.height);
   std::vector<uint64_t> photons_before(replicates, 0);
   const double photon_share = photons > 0 ? 0.3 : 0.0;
+  double taken = 0.0;           // samples of a pixel, mean
   for (uint64_t pass = 0; pass < n_passes; ++pass) {
     const auto replicate = static_cast<uint32_t>(pass % replicates);
     const auto done = [&](double within) {
@@ -41,17 +67,24 @@ void run_fixed(const KernelContext& context, Passes& passes, uint64_t n_passes, 
     }
     const auto first = static_cast<uint32_t>(samples * pass / n_passes);
     const auto last = static_cast<uint32_t>(samples * (pass + 1) / n_passes);
+    const auto trace_done = [&](double d) { done(photon_share + (1.0 - photon_share) * d); };
+    if (scene.render.adaptive && last - first >= least_adaptive) {
+      // A pixel may get many more than the mean: passes of a replicate begin far apart in its sequence.
+      const auto begin = static_cast<uint32_t>(pass / replicates << 18);
+      taken += trace_adaptively(passes, pass, replicate, begin, last - first, scene.film.width, result, trace_done);
+      continue;
+    }
+    taken += last - first;
     passes.start(replicate, first, SampleCounts::uniform(pixels, last - first), 1, samples == 1);
     for (uint32_t sample = 0; sample < last - first; sample += Passes::samples_per_batch) {
       const uint32_t count = std::min(Passes::samples_per_batch, last - first - sample);
-      for (const PlaneSums& sums : passes.trace(0, sample, sample + count, [&](double d) {
-             done(photon_share + (1.0 - photon_share) * (sample + d * count) / (last - first));
-           }))
+      for (const PlaneSums& sums :
+           passes.trace(0, sample, sample + count, [&](double d) { trace_done((sample + d * count) / (last - first)); }))
         result.rejected_values += result.film.add(pass, sums.name, sums.channels, sums.values, count);
     }
   }
   result.passes = static_cast<int>(n_passes);
-  result.samples = samples;
+  result.samples = taken;
 }
 
 }  // namespace

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <span>
-#include <string>
+#include <string_view>
 
 #include "film/bias_fit.hpp"
 #include "film/picture_error.hpp"
@@ -108,6 +107,7 @@ class Rounds {
 
     pictures_.assign(static_cast<size_t>(film_.replicates()), Picture(3 * pixels_, 0.0));
     scatter_.assign(pixels_, 0.0);
+    round_camera_error_ = 0.0;
     for (uint32_t row = 0; row < rows; ++row)
       for (int replicate = 0; replicate < film_.replicates(); ++replicate) {
         const uint32_t done = row * static_cast<uint32_t>(film_.replicates()) + static_cast<uint32_t>(replicate);
@@ -121,7 +121,7 @@ class Rounds {
     samples_before_ += 2 * rows * counts.most();
     result_.rounds += 1;
     result_.samples += spent_.camera_cost / static_cast<double>(pixels_);
-    round_camera_error_ /= replicates() * replicates() * rows * rows * 3.0 * static_cast<double>(pixels_);
+    round_camera_error_ /= replicates() * replicates() * rows * rows;
   }
 
   /// Pass `row` of a replicate's `rows`; `done` of the round is over.
@@ -129,7 +129,6 @@ class Rounds {
                 double done) {
     const double step = 1.0 / (rows * replicates());
     const uint64_t pass = static_cast<uint64_t>(result_.passes++);
-    if (row == 0 && replicate == 0) round_camera_error_ = 0.0;
     if (passes_.has_photons()) {
       PhotonPassPlan plan;
       plan.pass = pass;
@@ -142,48 +141,16 @@ class Rounds {
       result_.photons += plan.count;
       if (const std::vector<float> dots = passes_.dots(); !dots.empty()) film_.add(pass, "photons", 1, dots, 1.0);
     }
-    passes_.start(replicate, samples_before_ + 2 * row * counts.most(), counts, 2, false);
-    std::map<std::string, PlaneSums> halves[2];
-    for (uint32_t half = 0; half < 2; ++half)
-      for (uint32_t sample = 0; sample < counts.most(); sample += Passes::samples_per_batch) {
-        const uint32_t last = std::min(counts.most(), sample + Passes::samples_per_batch);
-        for (PlaneSums& sums : passes_.trace(half, sample, last, [&](double d) {
-               tell(done + step * (0.5 + 0.25 * (half + (sample + d * (last - sample)) / counts.most())));
-             })) {
-          const auto [place, is_new] = halves[half].try_emplace(sums.name, std::move(sums));
-          if (!is_new)
-            for (size_t i = 0; i < place->second.values.size(); ++i) place->second.values[i] += sums.values[i];
-        }
-      }
-    add_pass(pass, replicate, rows, counts, halves);
-  }
-
-  /// Books what the halves of a pass gave.
-  void add_pass(uint64_t pass, uint32_t replicate, uint32_t rows, const SampleCounts& counts,
-                std::map<std::string, PlaneSums> (&halves)[2]) {
-    std::vector<float> inverse(pixels_);
-    for (size_t slot = 0; slot < pixels_; ++slot)
-      inverse[counts.pixel_of_slot[slot]] = 0.5f / static_cast<float>(counts.in_slot(slot));
-    const std::vector<float>&first = halves[0]["radiance"].values, &second = halves[1]["radiance"].values;
-    for (size_t i = 0; i < pixels_; ++i)
-      for (size_t c = 0; c < 3; ++c) {
-        // Half the difference of the halves' means is as far off as their mean is.
-        const double difference = static_cast<double>(first[3 * i + c]) - static_cast<double>(second[3 * i + c]);
-        const double off = static_cast<double>(inverse[i]) * difference;
-        if (!std::isfinite(off)) continue;
-        scatter_[i] += off * off / static_cast<double>(inverse[i]);
-        round_camera_error_ += off * off;
-      }
-    for (auto& [name, sums] : halves[0]) {
-      const std::vector<float>& rest = halves[1][name].values;
-      const auto channels = static_cast<size_t>(sums.channels);
-      for (size_t i = 0; i < sums.values.size(); ++i)
-        sums.values[i] = (sums.values[i] + rest[i]) * inverse[i / channels];
-      if (name == "radiance")
-        for (size_t i = 0; i < sums.values.size(); ++i)
-          if (std::isfinite(sums.values[i])) pictures_[replicate][i] += static_cast<double>(sums.values[i]) / rows;
-      for (float& value : sums.values) value *= static_cast<float>(weight_ / rows);
-      result_.rejected_values += film_.add(pass, name, sums.channels, sums.values, weight_ / rows);
+    HalvedPass traced = passes_.trace_halves(replicate, samples_before_ + 2 * row * counts.most(), counts,
+                                             [&](double d) { tell(done + step * (0.5 + 0.5 * d)); });
+    for (size_t i = 0; i < pixels_; ++i) scatter_[i] += traced.variance[i];
+    round_camera_error_ += traced.error;
+    for (PlaneSums& plane : traced.means) {
+      if (std::string_view(plane.name) == "radiance")
+        for (size_t i = 0; i < plane.values.size(); ++i)
+          if (std::isfinite(plane.values[i])) pictures_[replicate][i] += static_cast<double>(plane.values[i]) / rows;
+      for (float& value : plane.values) value *= static_cast<float>(weight_ / rows);
+      result_.rejected_values += film_.add(pass, plane.name, plane.channels, plane.values, weight_ / rows);
     }
   }
 

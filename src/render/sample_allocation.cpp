@@ -8,6 +8,7 @@ namespace vitrum {
 namespace {
 
 constexpr double least_share = 0.125;
+constexpr double most_share = 64.0;
 constexpr double most_samples = 1 << 16;  // of a pixel
 
 }  // namespace
@@ -31,7 +32,7 @@ std::vector<uint32_t> allot_samples(std::span<const double> variance, int width,
     double total = 0.0;
     for (size_t i = 0; i < samples.size(); ++i) {
       const double share = sum > 0.0 ? deviation[i] / sum * count : 1.0;
-      const double wanted = std::clamp(scale * std::max(share, least_share), 1.0, most_samples);
+      const double wanted = std::clamp(scale * std::clamp(share, least_share, most_share), 1.0, most_samples);
       // To the nearer power of two.
       samples[i] = std::bit_floor(static_cast<uint32_t>(wanted * std::sqrt(2.0)));
       total += samples[i];

@@ -10,7 +10,8 @@ namespace vitrum {
 /// Samples of each pixel, `mean` > 0 of them on average or somewhat fewer (each a power of two, at least 1), where one sample of a pixel
 /// has the variance `variance`, estimated from few. The sum of squared errors is least where a pixel's share goes as the root
 /// of its variance (Neyman 1934). Variance is taken as the mean of a pixel and its 8 neighbours, and no pixel gets less
-/// than a share of 1 in 8, since what few samples have missed shows no variance.
+/// than a share of 1/8, since what few samples have missed shows no variance, nor more than 64, since what few samples have
+/// met by chance seems all there is.
 std::vector<uint32_t> allot_samples(std::span<const double> variance, int width, double mean);
 
 /// What a round of passes costs and what error it left, and of the next round, by how much more of each to take.

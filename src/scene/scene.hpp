@@ -195,6 +195,7 @@ struct RenderSettings {
   int max_depth = 20;                       ///< surfaces that a camera path may meet
   double min_weight = 1e-4;                 ///< a branch of less than this weight is cut
   Sampling sampling = Sampling::low_discrepancy;
+  bool adaptive = false;                    ///< samples are dealt out to pixels by their variance; `samples` is their mean
   double target_error = 0.0;                ///< relative error of the picture at which to stop; 0: none
   double time_limit = 0.0;                  ///< [s] after which to stop; 0: none. With either, samples, passes and photons.count
                                             ///< are chosen on the way

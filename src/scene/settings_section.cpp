@@ -13,7 +13,7 @@ constexpr int deepest_path = 1000;
 
 RenderSettings read_render_settings(const TomlTable& table) {
   table.check_keys({}, {"samples", "passes", "seed", "reflectance", "caustics", "lights", "textures", "max_depth",
-                        "min_weight", "sampling", "target_error", "time_limit"});
+                        "min_weight", "sampling", "adaptive", "target_error", "time_limit"});
   RenderSettings settings;
   table.integer("samples", settings.samples, 1, 1 << 24);
   table.integer("passes", settings.passes, 1, 1 << 24);
@@ -34,6 +34,7 @@ RenderSettings read_render_settings(const TomlTable& table) {
   table.integer("max_depth", settings.max_depth, 1, deepest_path);
   table.number("min_weight", settings.min_weight, {0, 1});
   table.choice("sampling", settings.sampling, samplings);
+  table.flag("adaptive", settings.adaptive);
   table.number("target_error", settings.target_error, {1e-6, 1});
   table.number("time_limit", settings.time_limit, {1e-3, 1e9});
   return settings;

@@ -31,6 +31,7 @@ const std::vector<Case> cases = {
     {"cornell_glass", {"film.size=[48, 37]", "render.samples=2", "photons.count=100_000"}},
     {"default_scene", {"film.size=[30, 22]", "render.samples=4", "render.passes=2", "photons.count=20_000",
                        "photons.estimate='footprints'"}, false},
+    {"default_scene", {"film.size=[30, 22]", "render.samples=128", "render.adaptive=true", "photons.count=10_000"}},
     {"default_scene", {"film.size=[30, 22]", "render.target_error=0.2"}},
     {"default_scene", {"film.size=[30, 22]", "render.target_error=0.2", "photons.estimate='footprints'"}, false},
 };
