@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""usage: test_peers.py VITRUM SCRATCH. tools/peers with vitrum alone, its score, and what its document says of given figures."""
+"""usage: test_peers.py VITRUM SCRATCH. tools/peers with vitrum alone, its score, what its document says of figures."""
 
 import json
 import math
@@ -21,8 +21,8 @@ from peer_systems.systems import PIXELS, scored
 
 
 def run(*options):
-    return subprocess.run([sys.executable, "-B", ROOT / "tools/peers", "--vitrum", VITRUM, "--output", SCRATCH, *options],
-                          capture_output=True, text=True)
+    command = [sys.executable, "-B", ROOT / "tools/peers", "--vitrum", VITRUM, "--output", SCRATCH, *options]
+    return subprocess.run(command, capture_output=True, text=True)
 
 
 class WithVitrumAlone(unittest.TestCase):

@@ -34,8 +34,8 @@ class Curve:
         return None
 
     def exponent(self, above, below):
-        """Exponent of the photons by which the error falls from `above` to `below`, or to its last point if it ends before;
-        None if it does not come to `above`."""
+        """Exponent of the photons by which the error falls from `above` to `below`, or to its last point if that comes
+        first; None if it does not come to `above`."""
         first = self.at("photons", above)
         if first is None:
             return None

@@ -12,27 +12,28 @@ NOT_MEASURED = "not measured here"
 HEAD = """\
 # What vitrum's pictures cost
 
-Error of the default scene's caustic against CPU time, by vitrum and by others. Made by `tools/peers`, which this page tells
-how to run at its end; figures of the same machine, {processor}.
+Error of the default scene's caustic against CPU time, by vitrum and by others. Made by `tools/peers` on one machine:
+{processor}.
 
 ![Relative RMSE against CPU time without start-up, logarithmic axes](performance/caustic_plate.svg)
 
 ## What is measured
 
 Each system renders `models/caustic_plate`: a glass ball of radius .3 m above a plane, under a point light, seen by a
-pinhole camera between ball and plane, 128 x 128 pixels of a square of .4 m that only the caustic lights. It does so with the
-exact ball and with a mesh of 360 x 720 facets that have the ball's own normals, from scenes of ours in
+pinhole camera between ball and plane, 128 x 128 pixels of a square of .4 m that only the caustic lights. It does so with
+the exact ball and with a mesh of 360 x 720 facets that have the ball's own normals, from scenes of ours in
 `tools/peer_systems`, with several amounts of work.
 
-- *Error*: root of the mean squared difference to the true irradiance over the pixels whose centre is within .2 m of the axis,
-  divided by the mean of the truth there. The truth is a quadrature over all orders of paths
-  (`src/reference/ball_caustic.hpp`, written by `vitrum bench photons --truth`); all pictures are scored by one function.
-  No picture is scaled to fit: *flux*, what arrives within .2 m over the truth's, shows that the units agree.
-- *CPU s, whole*: user and system time of the process and all that it starts, on all threads, from its start to a written
-  picture; reading files and building trees are in it.
-- *CPU s, compute*: the same less that of a run that does next to nothing. For vitrum, whose runs are shorter than a start-up
-  varies, it is what its report tells of the same kind: CPU time of the whole process while photons and camera rays are
-  computed, less that of a run with one photon and one sample a pixel.
+- *Error*: root of the mean squared difference to the true irradiance over the pixels whose centre is within .2 m of the
+  axis, divided by the mean of the truth there. The truth is a quadrature over all orders of paths
+  (`src/reference/ball_caustic.hpp`, written by `vitrum bench photons --truth`); one function scores all pictures. None
+  is scaled to fit: *flux*, what arrives within .2 m over the truth's, shows that the units agree.
+- *CPU s, whole*: user and system time of the process and all that it starts, on all threads, from its start to a
+  written picture; reading files and building trees are in it. The mesh is an OBJ file to vitrum, which is text, a
+  binary PLY to Mitsuba and LuxCore, a scene file to POV-Ray.
+- *CPU s, compute*: the same less that of a run that does next to nothing. For vitrum, whose runs are shorter than a
+  start-up varies, it is what its report tells of the same kind: CPU time of the whole process while photons and camera
+  rays are computed, less that of a run with one photon and one sample a pixel.
 - Figures are medians of five runs, or of one where it takes more than 5 CPU s. Other work ran on the machine, which
   lengthens wall time, hence not shown, and disturbs CPU time by some percent.
 - Figures at an error stand between two runs, on logarithmic axes.
@@ -155,7 +156,8 @@ def goals(cases, benchmarks):
     goal("Exact ball to error .10, whole process: 20 times less", 20, against_mitsuba(ball, "whole", 0.1))
     goal("Exact ball to error .02, compute: 5,000 times less", 5000, against_mitsuba(ball, "compute", 0.02))
     ours = [curve for curve in ball if curve.system == "vitrum"]
-    exponents = {curve.name.removeprefix("vitrum, "): curve.exponent(0.2, 0.01) for curve in ours if curve.exponent(0.2, 0.01)}
+    exponents = {curve.name.removeprefix("vitrum, "): curve.exponent(0.2, 0.01) for curve in ours}
+    exponents = {name: exponent for name, exponent in exponents.items() if exponent}
     goal("From .2 to .01 the error falls as the photons' power of -.55 or steeper", 0.55,
          (None, NOT_MEASURED) if not exponents else
          (-min(exponents.values()), "; ".join(f"{name}: {exponent:.2f}" for name, exponent in exponents.items())))
@@ -172,10 +174,11 @@ def goals(cases, benchmarks):
 
 
 def all_runs(cases):
-    rows = [[CASES[case], curve.name, f"{point.photons:,}", number(point.compute), number(point.whole), number(point.error),
-             f"{point.flux:.4f}"]
+    head = ["case", "system", "photons", "CPU s, compute", "CPU s, whole", "error", "flux"]
+    rows = [[CASES[case], curve.name, f"{point.photons:,}", number(point.compute), number(point.whole),
+             number(point.error), f"{point.flux:.4f}"]
             for case, curves in cases.items() for curve in curves for point in curve.points]
-    return "## All runs\n\n" + table(["case", "system", "photons", "CPU s, compute", "CPU s, whole", "error", "flux"], rows)
+    return "## All runs\n\n" + table(head, rows)
 
 
 def own_benchmark(systems):
@@ -183,14 +186,16 @@ def own_benchmark(systems):
     if bench is None:
         return ""
     return ("## By vitrum's own benchmark\n\n`vitrum bench photons` has one process for all runs and takes the least of "
-            "three, so its CPU times are without start-up:\n\n" + "".join(f"- {finding}\n" for finding in bench["findings"]))
+            "three, so its CPU times are without start-up:\n\n" +
+            "".join(f"- {finding}\n" for finding in bench["findings"]))
 
 
 def write_document(output, systems):
     """Raises Failed if systems were measured on different processors: their times say nothing together."""
     processors = {system["processor"] for system in systems.values() if "processor" in system}
     if len(processors) != 1:
-        raise Failed(f"results are of different processors ({'; '.join(sorted(processors))}); run tools/peers for all systems")
+        raise Failed(f"results are of different processors ({'; '.join(sorted(processors))}); "
+                     "run tools/peers for all systems")
     cases = {case: curves_of(systems, case) for case in CASES}
     cases = {case: curves for case, curves in cases.items() if curves}
     (output / "performance").mkdir(parents=True, exist_ok=True)

@@ -21,19 +21,19 @@ def _label(decade):
 
 
 def _panel(down, title, curves, colours, x_range, y_range):
-    right = WIDTH - LEGEND
+    right, bottom, top = WIDTH - LEGEND, down + HEIGHT - BOTTOM, down + TOP
 
     def across(value):
         return LEFT + (math.log10(value) - x_range[0]) / (x_range[1] - x_range[0]) * (right - LEFT)
 
     def up(value):
-        return down + HEIGHT - BOTTOM - (math.log10(value) - y_range[0]) / (y_range[1] - y_range[0]) * (HEIGHT - TOP - BOTTOM)
+        return bottom - (math.log10(value) - y_range[0]) / (y_range[1] - y_range[0]) * (bottom - top)
 
-    bottom, top = down + HEIGHT - BOTTOM, down + TOP
     svg = _text(LEFT, down + 20, "start", title, " font-size='14'")
     for decade in range(x_range[0], x_range[1] + 1):
         at = across(10.0 ** decade)
-        svg += f"<path d='M{at:.1f} {top}V{bottom}' stroke='#ddd'/>\n" + _text(at, bottom + 16, "middle", _label(decade))
+        svg += f"<path d='M{at:.1f} {top}V{bottom}' stroke='#ddd'/>\n"
+        svg += _text(at, bottom + 16, "middle", _label(decade))
     for decade in range(y_range[0], y_range[1] + 1):
         at = up(10.0 ** decade)
         svg += f"<path d='M{LEFT} {at:.1f}H{right}' stroke='#ddd'/>\n" + _text(LEFT - 6, at + 4, "end", _label(decade))

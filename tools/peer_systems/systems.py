@@ -82,7 +82,7 @@ def floats(path):
 
 
 def unpack_debian(package, folder):
-    """The folder in which the package lies unpacked, with those that it needs and that are not installed. Raises Failed."""
+    """The folder in which the package lies unpacked, with those that it needs that are not installed. Raises Failed."""
     root = folder / package
     if root.exists():
         return root
@@ -200,8 +200,8 @@ class Vitrum(System):
             path = self.mesh("ball.obj", mesh_ball.write_obj)
             mesh = ["--set", f'shape.ball={{type = "mesh", file = "{path}", material = "glass"}}']
         samples = min(max(line.samples_worth * amount >> 14, 4), 256) if amount > line.little else 1
-        whole = self.measured([self.program, "render", ROOT / "models/caustic_plate/scene.toml", "-o", picture, "--report",
-                               report, "--quiet", "--photons", amount, "--samples", samples, *line.options, *mesh])
+        whole = self.measured([self.program, "render", ROOT / "models/caustic_plate/scene.toml", "-o", picture, "--quiet",
+                               "--report", report, "--photons", amount, "--samples", samples, *line.options, *mesh])
         radiance = read_exr(picture.read_bytes())[2]["R"]
         told = json.loads(report.read_text())
         # The scene's lamp has pi W/sr and its lawn a reflectance of .01, so that the pi of Lambert's law falls out.
@@ -224,8 +224,8 @@ def all_systems(folder, scratch, program):
         return system
 
     return [in_folder(system) for system in (
-        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, the rest as it is by default; samples a pixel grow with the "
-               "photons from 4 to 256, as in `vitrum bench photons`.",
+        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, the rest by default; samples a pixel grow with the photons "
+               "from 4 to 256, as in `vitrum bench photons`.",
                (VitrumLine("footprints", {"ball": PHOTONS, "mesh": PHOTONS},
                            ("--set", "photons.estimate=footprints"), samples_worth=16),
                 VitrumLine("automatic radius", {"ball": PHOTONS, "mesh": PHOTONS},
@@ -234,12 +234,13 @@ def all_systems(folder, scratch, program):
         Mitsuba("mitsuba", "Mitsuba", "Integrator `ptracer`, variant `llvm_ad_rgb`, box filter, the rest by default.",
                 (Line("ptracer", {"ball": (64, 256, 1024, 4096), "mesh": (64, 256, 1024, 2048)}),),
                 ("mesh_ball.py", "mitsuba_plate.py")),
-        LuxCore("luxcore", "LuxCore", "Sampler `RANDOM`, which is the best here; the hybrid gives all samples to paths from the "
-                "light, there being nothing else to see. Balls are meshes to it.",
+        LuxCore("luxcore", "LuxCore", "Sampler `RANDOM`, which is the best here; the hybrid gives all samples to paths "
+                "from the light, there being nothing else to see. Balls are meshes to it.",
                 (Line("LIGHTCPU", {"mesh": (64, 256, 1024, 2048)}, ("light",)),
                  Line("PATHCPU, hybrid back/forward", {"mesh": (64, 256, 1024)}, ("hybrid",))),
                 ("mesh_ball.py", "luxcore_plate.py")),
-        PovRay("povray", "POV-Ray", "`photons { count N }` and nothing else set; one ray a pixel, or nine.",
+        PovRay("povray", "POV-Ray", "`photons { count N }` and nothing else set; photons are those "
+               "wanted on surfaces; one ray a pixel, or nine.",
                (Line("1 ray a pixel", {"ball": (10 ** 5, 10 ** 6, 4 * 10 ** 6), "mesh": (10 ** 5, 10 ** 6)}, ("-A",),
                      little=100, per_pixel=False),
                 Line("9 rays a pixel", {"ball": (10 ** 6, 4 * 10 ** 6, 10 ** 7), "mesh": (10 ** 6, 4 * 10 ** 6)},
@@ -249,8 +250,8 @@ def all_systems(folder, scratch, program):
 
 
 def scored(irradiance, truth):
-    """Root of the mean squared error over the pixels within .2 m of the axis, relative to the truth's mean there; and the
-    flux that falls there, relative to the truth's. As in src/verify/caustic_plate.hpp."""
+    """Root of the mean squared error over the pixels within .2 m of the axis, relative to the truth's mean there, as in
+    src/verify/caustic_plate.hpp; and the flux that falls there, relative to the truth's."""
     size = math.isqrt(PIXELS)
     inside = [i for i in range(PIXELS)
               if math.hypot(i % size - (size - 1) / 2, i // size - (size - 1) / 2) < size / 2]
