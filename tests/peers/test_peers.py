@@ -80,7 +80,7 @@ class Figures(unittest.TestCase):
                    "luxcore": {"name": "LuxCore", "left_out": "no network"}}
         write_document(SCRATCH / "made", systems)
         page = (SCRATCH / "made/performance.md").read_text()
-        self.assertIn("| LuxCore | left out |  | no network |", page)
+        self.assertIn("| LuxCore | left out |  |  | no network |", page)
         self.assertIn("2,000 times: 0.01 CPU s (line, 100 photons) against 20 |", page)
         self.assertIn("not measured here", page)
         systems["mitsuba"]["processor"] = "another"

@@ -35,7 +35,8 @@ the exact ball and with a mesh of 360 x 720 facets that have the ball's own norm
   start-up varies, it is what its report tells of the same kind: CPU time of the whole process while photons and camera
   rays are computed, less that of a run with one photon and one sample a pixel.
 - Figures are medians of five runs, or of one where it takes more than 5 CPU s. Other work ran on the machine, which
-  lengthens wall time, hence not shown, and disturbs CPU time by some percent.
+  lengthens wall time, hence not shown, and CPU time somewhat, too: what shares a core and its caches works slower. The
+  load average tells how much ran, the system itself included.
 - Figures at an error stand between two runs, on logarithmic axes.
 """
 
@@ -67,14 +68,21 @@ def table(head, rows):
     return "\n".join(lines) + "\n"
 
 
+def load(system):
+    """Between what the machine's load average was while the system was measured."""
+    loads = [point["load"] for case in system["cases"].values() for points in case.values() for point in points
+             if "load" in point]
+    return f"{min(loads):g} to {max(loads):g}" if loads else "not kept"
+
+
 def systems_table(systems):
     rows = []
     for system in systems.values():
         if "left_out" in system:
-            rows.append([system["name"], "left out", "", system["left_out"]])
+            rows.append([system["name"], "left out", "", "", system["left_out"]])
         else:
-            rows.append([system["name"], system["version"], system["date"], system["settings"]])
-    return "## The systems\n\n" + table(["system", "version", "measured", "settings"], rows)
+            rows.append([system["name"], system["version"], system["date"], load(system), system["settings"]])
+    return "## The systems\n\n" + table(["system", "version", "measured", "load average", "settings"], rows)
 
 
 def at_error(cases, error):
@@ -108,9 +116,12 @@ def best(curves, x, error):
 def against_mitsuba(curves, x, error):
     """How many times less vitrum takes than Mitsuba, and how that was found."""
     theirs = next((curve for curve in curves if curve.system == "mitsuba"), None)
+    errors = [point.error for curve in curves if curve.system == "vitrum" for point in curve.points]
     ours, curve = best(curves, x, error)
-    if theirs is None or ours is None:
+    if theirs is None or not errors:
         return None, NOT_MEASURED
+    if ours is None:
+        return 0, f"vitrum's error does not get there; {number(min(errors))} is the smallest measured"
     cost, how = theirs.at(x, error), ""
     if cost is None and x == "compute":
         cost, how = theirs.beyond(error), f", extrapolated with its slope of {theirs.slope('compute'):.2f}"
@@ -156,11 +167,13 @@ def goals(cases, benchmarks):
     goal("Exact ball to error .10, whole process: 20 times less", 20, against_mitsuba(ball, "whole", 0.1))
     goal("Exact ball to error .02, compute: 5,000 times less", 5000, against_mitsuba(ball, "compute", 0.02))
     ours = [curve for curve in ball if curve.system == "vitrum"]
-    exponents = {curve.name.removeprefix("vitrum, "): curve.exponent(0.2, 0.01) for curve in ours}
-    exponents = {name: exponent for name, exponent in exponents.items() if exponent}
+    falling = [(curve, exponent) for curve in ours if (exponent := curve.exponent(0.2, 0.01))]
     goal("From .2 to .01 the error falls as the photons' power of -.55 or steeper", 0.55,
-         (None, NOT_MEASURED) if not exponents else
-         (-min(exponents.values()), "; ".join(f"{name}: {exponent:.2f}" for name, exponent in exponents.items())))
+         (None, NOT_MEASURED) if not falling else
+         (max((-exponent for curve, exponent in falling if curve.at("photons", 0.01)), default=0),
+          "; ".join(f"{curve.name.removeprefix('vitrum, ')}: {exponent:.2f}" +
+                    ("" if curve.at("photons", 0.01) else f", down to {number(curve.points[-1].error)} only")
+                    for curve, exponent in falling)))
     least = min((point.error for curve in ours for point in curve.points), default=None)
     goal("No floor of the error above .005", 1 / 0.005, (None, NOT_MEASURED) if least is None else
          (1 / least, f"{number(least)} is the smallest measured"))

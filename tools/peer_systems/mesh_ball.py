@@ -42,8 +42,8 @@ def _position(normal):
 def write_ply(path):
     normals, triangles = list(_normals()), list(_triangles())
     with open(path, "wb") as file:
-        file.write(("ply\nformat binary_little_endian 1.0\n"
-                    f"element vertex {len(normals)}\n" + "".join(f"property float {p}\n" for p in ("x", "y", "z", "nx", "ny", "nz")) +
+        coordinates = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+        file.write((f"ply\nformat binary_little_endian 1.0\nelement vertex {len(normals)}\n{coordinates}"
                     f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n").encode())
         for normal in normals:
             file.write(struct.pack("<6f", *_position(normal), *normal))

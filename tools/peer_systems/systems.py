@@ -182,7 +182,7 @@ class Vitrum(System):
         self.truth_file = self.scratch / "truth.exr"
         self.measured([self.program, "bench", "photons", "--quick", "--report", report, "--truth", self.truth_file])
         told = json.loads(report.read_text())
-        self.version = f"{told['version']}, commit {told['commit']}, {told['device']['version']}"
+        self.version = f"{told['version']}, commit {told['commit']}, {told['device']['platform']} {told['device']['driver']}"
 
     def truth(self):
         return next(iter(read_exr(self.truth_file.read_bytes())[2].values()))
