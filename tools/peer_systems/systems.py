@@ -199,7 +199,7 @@ class Vitrum(System):
         if case == "mesh":
             path = self.mesh("ball.obj", mesh_ball.write_obj)
             mesh = ["--set", f'shape.ball={{type = "mesh", file = "{path}", material = "glass"}}']
-        samples = min(max(line.samples_worth * amount >> 14, 4), 256) if amount > line.little else 1
+        samples = min(max(line.samples_worth * amount >> 14, 4), 1024) if amount > line.little else 1
         whole = self.measured([self.program, "render", ROOT / "models/caustic_plate/scene.toml", "-o", picture, "--quiet",
                                "--report", report, "--photons", amount, "--samples", samples, *line.options, *mesh])
         radiance = read_exr(picture.read_bytes())[2]["R"]
@@ -211,10 +211,12 @@ class Vitrum(System):
 @dataclass(frozen=True)
 class VitrumLine(Line):
     per_pixel: bool = False
-    samples_worth: int = 1      # samples a pixel grow with this many times the photons, as in src/bench/photons.cpp
+    samples_worth: int = 1      # samples a pixel grow with this many times the photons; 256 would leave an error of .016
 
 
-PHOTONS = tuple(4 ** k for k in range(6, 12))
+def photons(most):
+    """4,096, and four times as many from run to run."""
+    return tuple(4 ** k for k in range(6, most + 1))
 
 
 def all_systems(folder, scratch, program):
@@ -225,10 +227,10 @@ def all_systems(folder, scratch, program):
 
     return [in_folder(system) for system in (
         Vitrum("vitrum", "vitrum", "`photons.estimate` as named, the rest by default; samples a pixel grow with the photons "
-               "from 4 to 256, as in `vitrum bench photons`.",
-               (VitrumLine("footprints", {"ball": PHOTONS, "mesh": PHOTONS},
+               "as in `vitrum bench photons`, but to 1,024.",
+               (VitrumLine("footprints", {"ball": photons(10), "mesh": photons(10)},
                            ("--set", "photons.estimate=footprints"), samples_worth=16),
-                VitrumLine("automatic radius", {"ball": PHOTONS, "mesh": PHOTONS},
+                VitrumLine("automatic radius", {"ball": photons(12), "mesh": photons(11)},
                            ("--set", "photons.estimate=automatic"))),
                ("mesh_ball.py",), program=program),
         Mitsuba("mitsuba", "Mitsuba", "Integrator `ptracer`, variant `llvm_ad_rgb`, box filter, the rest by default.",
