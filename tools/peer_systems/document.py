@@ -20,8 +20,8 @@ Error of the default scene's caustic against CPU time, by vitrum and by others. 
 ## What is measured
 
 Each system renders `models/caustic_plate`: a glass ball of radius .3 m above a plane, under a point light, seen by a
-pinhole camera between ball and plane, 128 x 128 pixels of a square of .4 m that only the caustic lights. It does so with
-the exact ball and with a mesh of 360 x 720 facets that have the ball's own normals, from scenes of ours in
+pinhole camera between ball and plane, 128 x 128 pixels of a square of .4 m that only the caustic lights. It does so
+with the exact ball and with a mesh of 360 x 720 facets that have the ball's own normals, from scenes of ours in
 `tools/peer_systems`, with several amounts of work.
 
 - *Error*: root of the mean squared difference to the true irradiance over the pixels whose centre is within .2 m of the
@@ -198,8 +198,8 @@ def own_benchmark(systems):
     bench = systems.get("vitrum", {}).get("bench")
     if bench is None:
         return ""
-    return ("## By vitrum's own benchmark\n\n`vitrum bench photons` has one process for all runs and takes the least of "
-            "three, so its CPU times are without start-up:\n\n" +
+    return ("## By vitrum's own benchmark\n\n`vitrum bench photons` has one process for all runs and takes the least "
+            "of three, so its CPU times are without start-up; it ends at 256 samples a pixel:\n\n" +
             "".join(f"- {finding}\n" for finding in bench["findings"]))
 
 

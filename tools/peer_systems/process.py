@@ -31,16 +31,17 @@ def output_of(*command, **options):
 
 
 def measured(command, log, environment=None, limit=1200):
-    """CPU seconds, user and system, of the command and all that it starts; what it prints goes to the file `log`. Raises
-    Failed."""
+    """CPU seconds, user and system, of the command and all that it starts; what it prints goes to the file `log`.
+    Raises Failed."""
     def spent():
         usage = resource.getrusage(resource.RUSAGE_CHILDREN)
         return usage.ru_utime + usage.ru_stime
 
     before = spent()
+    environment = {**os.environ, **(environment or {})}
     with open(log, "w") as file:
-        child = subprocess.Popen([str(part) for part in command], env={**os.environ, **(environment or {})},
-                                 stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, start_new_session=True)
+        child = subprocess.Popen([str(part) for part in command], env=environment, stdin=subprocess.DEVNULL,
+                                 stdout=file, stderr=subprocess.STDOUT, start_new_session=True)
     try:
         code = child.wait(limit)
     except subprocess.TimeoutExpired:

@@ -182,7 +182,8 @@ class Vitrum(System):
         self.truth_file = self.scratch / "truth.exr"
         self.measured([self.program, "bench", "photons", "--quick", "--report", report, "--truth", self.truth_file])
         told = json.loads(report.read_text())
-        self.version = f"{told['version']}, commit {told['commit']}, {told['device']['platform']} {told['device']['driver']}"
+        device = told["device"]
+        self.version = f"{told['version']}, commit {told['commit']}, {device['platform']} {device['driver']}"
 
     def truth(self):
         return next(iter(read_exr(self.truth_file.read_bytes())[2].values()))
@@ -200,8 +201,9 @@ class Vitrum(System):
             path = self.mesh("ball.obj", mesh_ball.write_obj)
             mesh = ["--set", f'shape.ball={{type = "mesh", file = "{path}", material = "glass"}}']
         samples = min(max(line.samples_worth * amount >> 14, 4), 1024) if amount > line.little else 1
-        whole = self.measured([self.program, "render", ROOT / "models/caustic_plate/scene.toml", "-o", picture, "--quiet",
-                               "--report", report, "--photons", amount, "--samples", samples, *line.options, *mesh])
+        whole = self.measured([self.program, "render", ROOT / "models/caustic_plate/scene.toml", "--quiet",
+                               "-o", picture, "--report", report, "--photons", amount, "--samples", samples,
+                               *line.options, *mesh])
         radiance = read_exr(picture.read_bytes())[2]["R"]
         told = json.loads(report.read_text())
         # The scene's lamp has pi W/sr and its lawn a reflectance of .01, so that the pi of Lambert's law falls out.
@@ -211,7 +213,7 @@ class Vitrum(System):
 @dataclass(frozen=True)
 class VitrumLine(Line):
     per_pixel: bool = False
-    samples_worth: int = 1      # samples a pixel grow with this many times the photons; 256 would leave an error of .016
+    samples_worth: int = 1      # samples a pixel grow with so many times the photons; 256 would leave an error of .016
 
 
 def photons(most):
@@ -226,8 +228,8 @@ def all_systems(folder, scratch, program):
         return system
 
     return [in_folder(system) for system in (
-        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, the rest by default; samples a pixel grow with the photons "
-               "as in `vitrum bench photons`, but to 1,024.",
+        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, the rest by default; samples a pixel grow with the "
+               "photons as in `vitrum bench photons`, but to 1,024.",
                (VitrumLine("footprints", {"ball": photons(10), "mesh": photons(10)},
                            ("--set", "photons.estimate=footprints"), samples_worth=16),
                 VitrumLine("automatic radius", {"ball": photons(12), "mesh": photons(11)},
