@@ -11,6 +11,7 @@
 #include "core/printed.hpp"
 #include "device/kernels.hpp"
 #include "device/opencl.hpp"
+#include "film/images.hpp"
 #include "scene/scene.hpp"
 
 namespace vitrum {
@@ -31,6 +32,8 @@ struct BenchResult {
   std::vector<BenchRow> rows;
   std::vector<std::string> findings;  ///< a sentence each: fitted slopes, ratios
   Plot plot;                    ///< without lines: none
+  PictureLayer truth;           ///< the picture that errors are from
+  int width = 0, height = 0;    ///< its size [pixels]
 };
 
 /// What a benchmark works with.

@@ -37,6 +37,8 @@ BenchResult bench_camera(const BenchContext& context) {
   longest.render.samples = static_cast<int>(truth_factor) * most;
   longest.render.seed += 1;
   const std::vector<double> truth = render(longest, context.device, options).film.mean("radiance");
+  result.truth = {"beauty", 3, {truth.begin(), truth.end()}};
+  result.width = scene.film.width, result.height = scene.film.height;
   context.progress(0.5);
   std::vector<std::pair<double, double>> by_samples, by_seconds;
   for (int samples = 1; samples <= most; samples *= 4) {

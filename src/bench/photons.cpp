@@ -15,6 +15,7 @@ struct Case {
   std::string name;
   Scene scene;
   std::function<double(const RenderResult&)> error;
+  PictureLayer truth;
   uint64_t worth = 1;  ///< photons with a radius that one of its photons makes up for: samples go by them
 };
 
@@ -25,7 +26,8 @@ int samples_for(uint64_t photons) { return static_cast<int>(std::clamp<uint64_t>
 std::vector<Case> plates(bool quick) {
   std::vector<Case> cases;
   const auto add_case = [&](const char* name, const CausticPlate& plate) {
-    cases.push_back({name, plate.scene, [plate](const RenderResult& result) { return plate.error(result); }});
+    cases.push_back({name, plate.scene, [plate](const RenderResult& result) { return plate.error(result); },
+                     {"beauty", 1, {plate.truth().begin(), plate.truth().end()}}});
   };
   const auto add_footprints = [&](const char* name, const CausticPlate& plate) {
     add_case(name, plate);
@@ -55,7 +57,8 @@ Case long_run(const BenchContext& context, uint64_t most) {
   options.kernels = context.kernels;
   options.views = {View::caustics};
   const std::vector<double> truth = render(scene, context.device, options).film.mean("caustics");
-  return {"scene", *context.scene, [truth](const RenderResult& result) { return relative_error(result.film.mean("caustics"), truth); }};
+  return {"scene", *context.scene, [truth](const RenderResult& result) { return relative_error(result.film.mean("caustics"), truth); },
+          {"beauty", 3, {truth.begin(), truth.end()}}};
 }
 
 }  // namespace
@@ -67,6 +70,9 @@ BenchResult bench_photons(const BenchContext& context) {
   BenchResult result;
   result.plot = {context.scene ? "Caustics of a scene, against a long run" : "The default scene's caustic, against its irradiance by quadrature",
                  "processor time of photons and camera rays [s]", "relative RMSE", {}, true, true};
+  const FilmSettings& film = cases.front().scene.film;
+  result.truth = cases.front().truth;
+  result.width = film.width, result.height = film.height;
   double done = 0.0;
   for (const Case& c : cases) {
     std::vector<std::pair<double, double>> by_photons, by_seconds;

@@ -11,6 +11,7 @@
 #include "core/suggest.hpp"
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
+#include "film/images.hpp"
 #include "scene/scene_file.hpp"
 #include "scene/textures.hpp"
 
@@ -18,7 +19,7 @@ namespace vitrum {
 namespace {
 
 struct BenchArguments {
-  std::string what, scene, device, report, plot;
+  std::string what, scene, device, report, plot, truth;
   unsigned threads = 0;
   KernelFiles kernels;
   bool quick = false;
@@ -72,6 +73,7 @@ void run_bench(const BenchArguments& arguments) {
     throw Error({arguments.scene}, std::string("the benchmark ") + benchmark.name + " takes no scene", "leave it out");
   for (const std::string& file : {arguments.report, arguments.plot})
     if (!file.empty()) check_whole_file(file);
+  if (!arguments.truth.empty()) check_writable(arguments.truth);
   prepare_opencl(arguments.threads);
   Scene scene;
   if (!arguments.scene.empty()) {
@@ -95,6 +97,9 @@ void run_bench(const BenchArguments& arguments) {
   if (!arguments.report.empty())
     write_whole_file(arguments.report, json_report(benchmark, result, device.info(), arguments.threads));
   if (!arguments.plot.empty()) write_whole_file(arguments.plot, plot_svg(result.plot));
+  if (!arguments.truth.empty())
+    write_picture(arguments.truth, result.width, result.height, {result.truth}, DisplaySettings{},
+                  {{"version", version()}, {"truth", arguments.what}});
 }
 
 }  // namespace
@@ -109,6 +114,7 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--threads", arguments->threads, "Threads of a CPU device (0: all)")->type_name("N");
   command->add_option("--report", arguments->report, "Write the figures as JSON")->type_name("FILE");
   command->add_option("--plot", arguments->plot, "Write a plot as SVG")->type_name("FILE");
+  command->add_option("--truth", arguments->truth, "Write the picture that errors are from, best as EXR")->type_name("FILE");
   command->add_flag("--quick", arguments->quick, "Seconds instead of minutes, to see that it runs: the figures say little");
   command->add_option("--kernels", arguments->kernels.folder, "Read the kernels from this folder instead of the binary")
       ->type_name("DIR");

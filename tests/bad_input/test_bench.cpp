@@ -5,6 +5,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "film/images.hpp"
 
 using namespace vitrum;
 
@@ -12,8 +13,9 @@ TEST_CASE("each benchmark runs and writes its figures and a plot") {
   const TemporaryFolder folder;
   for (const std::string name : {"photons", "camera"}) {
     CAPTURE(name);
-    const std::string json = folder / (name + ".json"), svg = folder / (name + ".svg");
-    const Ended run = vitrum_run({"bench", name, "--quick", "--threads", "2", "--report", json, "--plot", svg});
+    const std::string json = folder / (name + ".json"), svg = folder / (name + ".svg"), exr = folder / (name + ".exr");
+    const Ended run =
+        vitrum_run({"bench", name, "--quick", "--threads", "2", "--report", json, "--plot", svg, "--truth", exr});
     REQUIRE_MESSAGE(run.code == 0, run.err);
     const auto report = nlohmann::json::parse(file_bytes(json));
     CHECK(report["benchmark"] == name);
@@ -25,6 +27,9 @@ TEST_CASE("each benchmark runs and writes its figures and a plot") {
     }
     CHECK(contains(report["findings"].dump(), "error ~ "));
     CHECK(contains(file_bytes(svg), "relative RMSE"));
+    const Picture truth = read_picture(exr, {"test"});
+    CHECK(truth.width == (name == "photons" ? 128 : 32));
+    CHECK(truth.pixels[truth.pixels.size() / 2 + static_cast<size_t>(truth.width) / 2].x > 0.0f);
   }
 }
 
