@@ -24,7 +24,7 @@ FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) { return (Mask)-1
 
 #define MAX_CANDIDATES 128           // a multiple of 8, at least enough_candidates(MAX_NEAREST) + 7
 #define STACK_SIZE (7 * PHOTON_TREE_LEVELS + 1)
-#define LEVEL_SHIFT 28
+#define ENTRY_SHIFT 28
 
 // Candidates are cut down to the k nearest when there are so many.
 FUNCTION uint enough_candidates(uint k) { return k + k / 2 + 8; }
@@ -70,13 +70,13 @@ FUNCTION __global const float* leaf_of(__global const float* leaves, uint entry)
 }
 
 FUNCTION __global const float* node_of(const PhotonTreeData* tree, __global const float* nodes, uint entry) {
-  const uint i = tree->first_node[entry >> LEVEL_SHIFT] + (entry & ((1u << LEVEL_SHIFT) - 1u));
+  const uint i = tree->first_node[entry >> ENTRY_SHIFT] + (entry & ((1u << ENTRY_SHIFT) - 1u));
   return nodes + (ulong)i * (PHOTON_NODE_ROWS * 8);
 }
 
 // Lane 0 of the children of an entry of the stack, a level and a number in it.
 FUNCTION uint first_child(uint entry) {
-  return ((entry >> LEVEL_SHIFT) - 1u) << LEVEL_SHIFT | (entry & ((1u << LEVEL_SHIFT) - 1u)) << 3;
+  return ((entry >> ENTRY_SHIFT) - 1u) << ENTRY_SHIFT | (entry & ((1u << ENTRY_SHIFT) - 1u)) << 3;
 }
 
 // Leaves the k nearest of the `count` candidates (k or more, all below `limit`), in no order; returns a new limit.
@@ -114,14 +114,14 @@ FUNCTION float nearest_radius2(const PhotonTreeData* tree, __global const float*
   float bounds[STACK_SIZE];
   uint stack[STACK_SIZE];
   uint waiting = 1;
-  stack[0] = tree->top << LEVEL_SHIFT;
+  stack[0] = tree->top << ENTRY_SHIFT;
   bounds[0] = 0.0f;
   while (waiting > 0) {
     --waiting;
     if (bounds[waiting] >= limit) continue;
     const uint entry = stack[waiting];
     float distances[8];
-    if (entry >> LEVEL_SHIFT == 0) {
+    if (entry >> ENTRY_SHIFT == 0) {
       const float8 d = photon_distances(leaf_of(leaves, entry), p, n);
       if (!any(d < limit)) continue;
       vstore8(d, 0, distances);
@@ -166,10 +166,10 @@ FUNCTION Sums power_within(const PhotonTreeData* tree, __global const float* nod
   Sums sums = no_sums();
   uint stack[STACK_SIZE];
   uint waiting = 1;
-  stack[0] = tree->top << LEVEL_SHIFT;
+  stack[0] = tree->top << ENTRY_SHIFT;
   while (waiting > 0) {
     const uint entry = stack[--waiting];
-    if (entry >> LEVEL_SHIFT == 0) {
+    if (entry >> ENTRY_SHIFT == 0) {
       __global const float* leaf = leaf_of(leaves, entry);
       const int8 counts = photon_distances(leaf, p, n) <= radius2;
       sums.minus_count += counts;

@@ -1,6 +1,6 @@
 #pragma once
-// What `vitrum bench` measures: error against processor time, and rates beside those of a library that does the same. A new
-// benchmark is a file beside this one, declared in benchmarks.hpp and listed in benchmark.cpp.
+// What `vitrum bench` measures: error against processor time, rates beside those of a library that does the same, and
+// start-up. A new benchmark is a file beside this one, declared in benchmarks.hpp and listed in benchmark.cpp.
 
 #include <cstdint>
 #include <functional>
@@ -31,7 +31,7 @@ struct BenchRow {
 struct BenchResult {
   std::vector<BenchRow> rows;
   std::vector<std::string> findings;  ///< a sentence each: fitted slopes, ratios
-  Plot plot;                    ///< without lines: none
+  Plot plot;                  
   PictureLayer truth;           ///< the picture that errors are from
   int width = 0, height = 0;    ///< its size [pixels]
 };
@@ -39,6 +39,8 @@ struct BenchResult {
 /// What a benchmark works with.
 struct BenchContext {
   Device& device;
+  std::string device_choice;    ///< as --device says it, for a process of its own
+  unsigned threads;             ///< of a CPU device, and of a library beside it
   KernelFiles kernels;
   const Scene* scene = nullptr; ///< the user's; none: the benchmark's own
   bool quick = false;           ///< seconds instead of minutes, with figures that say little
@@ -49,6 +51,7 @@ struct Benchmark {
   const char* name;             ///< as on the command line
   const char* what;             ///< for --help
   bool takes_scene;
+  bool has_plot;
   BenchResult (*run)(const BenchContext&);  ///< throws Error as the device and its kernels do
 };
 

@@ -7,5 +7,8 @@ namespace vitrum {
 
 BenchResult bench_photons(const BenchContext& context);
 BenchResult bench_camera(const BenchContext& context);
+BenchResult bench_traversal(const BenchContext& context);
+BenchResult bench_gather(const BenchContext& context);
+BenchResult bench_startup(const BenchContext& context);
 
 }  // namespace vitrum

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "commands/commands.hpp"
 #include "commands/scene_arguments.hpp"
@@ -46,7 +47,7 @@ std::string json_report(const Benchmark& benchmark, const BenchResult& result, c
       {"version", version()},
       {"commit", commit()},
       {"device", {{"name", device.name}, {"platform", device.platform}, {"version", device.version}, {"driver", device.driver}}},
-      {"threads", threads == 0 ? device.compute_units : threads},
+      {"threads", threads},
       {"rows", rows},
       {"findings", result.findings},
   };
@@ -71,6 +72,8 @@ void run_bench(const BenchArguments& arguments) {
   const Benchmark& benchmark = benchmark_of(arguments.what);
   if (!arguments.scene.empty() && !benchmark.takes_scene)
     throw Error({arguments.scene}, std::string("the benchmark ") + benchmark.name + " takes no scene", "leave it out");
+  if (!arguments.plot.empty() && !benchmark.has_plot)
+    throw Error({"--plot " + arguments.plot}, std::string("the benchmark ") + benchmark.name + " has no plot", "leave it out");
   for (const std::string& file : {arguments.report, arguments.plot})
     if (!file.empty()) check_whole_file(file);
   if (!arguments.truth.empty()) check_writable(arguments.truth);
@@ -81,21 +84,22 @@ void run_bench(const BenchArguments& arguments) {
     load_textures(scene);
   }
   Device device(arguments.device);
-  std::printf("%s, %s, %u threads\n", device.info().name.c_str(), device.info().platform.c_str(),
-              arguments.threads == 0 ? device.info().compute_units : arguments.threads);
+  const unsigned all = device.info().is_cpu ? device.info().compute_units : std::thread::hardware_concurrency();
+  const unsigned threads = arguments.threads == 0 ? all : arguments.threads;
+  std::printf("%s, %s, %u threads\n", device.info().name.c_str(), device.info().platform.c_str(), threads);
   BenchResult result;
   {
     Progress progress("bench");
     const bool was_quiet = quiet();
     set_quiet(true);            // each render would tell of itself
-    result = benchmark.run({device, arguments.kernels, arguments.scene.empty() ? nullptr : &scene, arguments.quick,
-                            [&](double done) { progress.update(std::min(done, 1.0)); }});
+    result = benchmark.run({device, arguments.device, threads, arguments.kernels, arguments.scene.empty() ? nullptr : &scene,
+                            arguments.quick, [&](double done) { progress.update(std::min(done, 1.0)); }});
     set_quiet(was_quiet);
   }
   print_rows(result.rows);
   for (const std::string& finding : result.findings) std::printf("%s\n", finding.c_str());
   if (!arguments.report.empty())
-    write_whole_file(arguments.report, json_report(benchmark, result, device.info(), arguments.threads));
+    write_whole_file(arguments.report, json_report(benchmark, result, device.info(), threads));
   if (!arguments.plot.empty()) write_whole_file(arguments.plot, plot_svg(result.plot));
   if (!arguments.truth.empty())
     write_picture(arguments.truth, result.width, result.height, {result.truth}, DisplaySettings{},
@@ -105,7 +109,7 @@ void run_bench(const BenchArguments& arguments) {
 }  // namespace
 
 void add_bench_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("bench", "Measure error against processor time");
+  CLI::App* command = app.add_subcommand("bench", "Measure errors, rates and times beside others'");
   const auto arguments = std::make_shared<BenchArguments>();
   command->add_option("benchmark", arguments->what, "What to measure, see below")->required()->type_name("WHAT");
   command->add_option("scene", arguments->scene, "Scene file to measure with, in place of the benchmark's own")->type_name("SCENE");
@@ -121,7 +125,7 @@ void add_bench_command(CLI::App& app) {
   std::string footer = "Benchmarks:\n";
   for (const Benchmark& benchmark : benchmarks())
     footer += "  " + std::string(benchmark.name) + std::string(12 - std::string(benchmark.name).size(), ' ') + benchmark.what + "\n";
-  command->footer(footer + "Times are processor times of all threads, the least of three runs, without start-up. docs/bench.md tells more.");
+  command->footer(footer + "Times are processor times of all threads, but for startup. docs/bench.md tells more.");
   command->callback([arguments] { run_bench(*arguments); });
 }
 

@@ -1,32 +1,26 @@
 #include "render/passes.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 #include <utility>
 
+#include "core/cpu_time.hpp"
 #include "render/photon_dots.hpp"
 
 namespace vitrum {
 namespace {
 
-/// Books the CPU time of the process, all threads and the system's part of it, while it lives.
+/// Books the CPU time of the process while it lives.
 class CpuTimer {
  public:
-  explicit CpuTimer(double& seconds) : seconds_(seconds), start_(now()) {}
-  ~CpuTimer() { seconds_ += now() - start_; }
+  explicit CpuTimer(double& seconds) : seconds_(seconds), start_(process_cpu_seconds()) {}
+  ~CpuTimer() { seconds_ += process_cpu_seconds() - start_; }
   CpuTimer(const CpuTimer&) = delete;
   CpuTimer& operator=(const CpuTimer&) = delete;
 
  private:
-  static double now() {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  }
   double& seconds_;
   double start_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Just enough OpenCL for the tests and tools of the tree: the first device, kernels from text, buffers from vectors.
+// Just enough OpenCL for the tests of the tree: the first device, kernels from text, buffers from vectors.
 
 #define CL_HPP_TARGET_OPENCL_VERSION 120
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120

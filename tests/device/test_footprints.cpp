@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "device/gatherer.hpp"
+#include "verify/gatherer.hpp"
 #include "verify/photon_run.hpp"
 #include "verify/scenes.hpp"
 
@@ -322,8 +322,10 @@ TEST_CASE("footprints: what is gathered is the sum over all that cover a place, 
     const double height = glm::dot(place - plane.point, plane.normal);
     queries.push_back({place + (off - height) * plane.normal, glm::normalize(turned)});
   }
-  const std::vector<glm::vec3> found =
-      gathered_at(device, gather_kernel(device, {}, scene_features(scene)), "gather", map, scene, queries);
+  const PlacedQueries placed = placed_queries(device, queries);
+  cl::Kernel kernel = gather_kernel(device, {}, scene_features(scene));
+  gather(device, kernel, map, scene, placed);
+  const std::vector<glm::vec3> found = irradiance_of(device, placed);
 
   constexpr double u = 0x1p-24;
   const double most_off_plane = 0.125 * static_cast<double>(map.radius);

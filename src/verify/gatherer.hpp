@@ -1,12 +1,10 @@
 #pragma once
-// Photons and places to gather them at, and the kernels that do so, for tests and benchmarks.
+// Photons and places to gather them at, and the kernels that do so, for benchmarks and tests.
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <span>
-#include <stdexcept>
 
 #include "render/photon_grid.hpp"
 #include "render/photon_pass.hpp"
@@ -14,10 +12,9 @@
 
 namespace vitrum {
 
-/// A surface that scatters.
+/// Where irradiance is asked for: a place [m] and the side of a surface.
 struct Query {
   glm::vec3 position{0}, normal{0, 1, 0};
-  glm::vec3 diffuse{1};
 };
 
 /// A photon as it is stored.
@@ -28,6 +25,26 @@ inline cl_float8 photon(glm::vec3 p, glm::vec3 direction, glm::vec3 power) {
   return {{p.x, p.y, p.z, std::bit_cast<float>(packed), power.x, power.y, power.z, 0}};
 }
 
+/// Photons on the device, sorted.
+struct SortedPhotons {
+  PhotonMap map;
+  int nearest = 0;              ///< how many of them are gathered; 0: those within the map's radius
+};
+
+/// Queries on the device.
+struct PlacedQueries {
+  uint32_t count = 0;
+  Buffer<float> places, irradiance;
+};
+
+inline PlacedQueries placed_queries(Device& device, const std::vector<Query>& queries) {
+  std::vector<float> places;
+  for (const Query& query : queries)
+    for (const glm::vec3& v : {query.position, query.normal}) places.insert(places.end(), {v.x, v.y, v.z});
+  return {static_cast<uint32_t>(queries.size()), device.upload(places, "queries"),
+          device.allocate<float>(3 * queries.size(), "queries")};
+}
+
 /// kernels/checks/gather.cl for these features.
 inline cl::Kernel gather_kernel(const Device& device, const KernelFiles& files, const Features& features) {
   return cl::Kernel(device.build("checks/gather.cl", kernel_source(files, {"checks/gather.cl"}),
@@ -35,35 +52,35 @@ inline cl::Kernel gather_kernel(const Device& device, const KernelFiles& files, 
                     "gather_at");
 }
 
-/// Irradiance at each query [W/m2].
-inline std::vector<glm::vec3> gathered_at(Device& device, cl::Kernel kernel, const char* stage, const PhotonMap& map,
-                                          const Scene& scene, const std::vector<Query>& queries) {
-  const uint32_t count = static_cast<uint32_t>(queries.size());
-  std::vector<float> places;
-  for (const Query& query : queries)
-    for (const glm::vec3& v : {query.position, query.normal}) places.insert(places.end(), {v.x, v.y, v.z});
-  const Buffer<float> on_device = device.upload(places, "queries");
-  const Buffer<float> irradiance = device.allocate<float>(size_t{3} * count, "queries");
-  set_arguments(kernel, 0, count, on_device);
-  set_arguments(kernel, set_map_arguments(kernel, 2, map, scene), irradiance);
-  device.launch(stage, kernel, count);
-  const std::vector<float> values = device.read(irradiance, 0, size_t{3} * count);
-  std::vector<glm::vec3> found(count);
-  for (size_t i = 0; i < count; ++i) found[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  return found;
+/// Leaves the irradiance of the queries, and waits for it. `scene`: its photon settings count.
+inline void gather(Device& device, cl::Kernel& kernel, const PhotonMap& map, const Scene& scene,
+                   const PlacedQueries& queries) {
+  set_arguments(kernel, 0, queries.count, queries.places);
+  set_arguments(kernel, set_map_arguments(kernel, 2, map, scene), queries.irradiance);
+  device.launch("gather", kernel, queries.count);
+  device.finish();
 }
 
-/// The device with the kernels that sort and gather.
+/// What `gather` left, red, green and blue [W/m2].
+inline std::vector<glm::vec3> irradiance_of(Device& device, const PlacedQueries& queries) {
+  const std::vector<float> values = device.read(queries.irradiance, 0, queries.irradiance.size());
+  std::vector<glm::vec3> irradiance(queries.count);
+  for (size_t i = 0; i < irradiance.size(); ++i) irradiance[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return irradiance;
+}
+
+/// The kernels that sort and gather.
 class Gatherer {
  public:
-  explicit Gatherer(unsigned group_size, const KernelFiles& files = {})
-      : device_("", group_size),
+  explicit Gatherer(Device& device, const KernelFiles& files = {})
+      : device_(device),
         kernels_(device_, files, {"photon_sort"}, Features{}.build_options()),
         context_{device_, kernels_, scene_, data_, device_scene_, features_},
         within_(gather_kernel(device_, files, features_of(false))),
         nearest_(gather_kernel(device_, files, features_of(true))) {}
 
-  std::vector<glm::vec3> within(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, float radius) {
+  /// In a grid, to be gathered within `radius` [m].
+  SortedPhotons grid(const std::vector<cl_float8>& photons, float radius) {
     scene_.photons.estimate = PhotonEstimate::fixed_radius;
     scene_.photons.radius = static_cast<double>(radius);
     PhotonGrid grid(context_);
@@ -74,20 +91,32 @@ class Gatherer {
     for (size_t first = 0; first < photons.size(); first += 5 * run_length)
       grid.add(runs_of(std::span(photons).subspan(first, std::min(5 * run_length, photons.size() - first)), grid));
     grid.finish();
-    return run(within_, "within", grid.map(), queries);
+    return {grid.map()};
   }
 
-  std::vector<glm::vec3> nearest(const std::vector<cl_float8>& photons, const std::vector<Query>& queries, uint32_t k,
-                                 float max_radius) {
-    scene_.photons.estimate = PhotonEstimate::nearest;
-    scene_.photons.nearest = static_cast<int>(k);
-    PhotonMap map;
-    fill_photon_tree(device_, map, photons, static_cast<double>(max_radius));
-    return run(nearest_, "nearest", map, queries);
+  /// In a tree, of which the `nearest` within `max_radius` [m] are to be gathered.
+  SortedPhotons tree(const std::vector<cl_float8>& photons, int nearest, float max_radius) {
+    SortedPhotons sorted{{}, nearest};
+    fill_photon_tree(device_, sorted.map, photons, static_cast<double>(max_radius));
+    return sorted;
   }
 
-  /// Seconds that the kernels ran, by stage: sort, within, nearest.
-  std::map<std::string, double> seconds() { return device_.stage_seconds(); }
+  PlacedQueries place(const std::vector<Query>& queries) { return placed_queries(device_, queries); }
+
+  /// Leaves the irradiance of the queries, and waits for it.
+  void gather(const SortedPhotons& photons, const PlacedQueries& queries) {
+    cl::Kernel& kernel = photons.nearest > 0 ? nearest_ : within_;
+    scene_.photons.estimate = photons.nearest > 0 ? PhotonEstimate::nearest : PhotonEstimate::fixed_radius;
+    scene_.photons.nearest = photons.nearest;
+    vitrum::gather(device_, kernel, photons.map, scene_, queries);
+  }
+
+  /// Irradiance of the queries, red, green and blue [W/m2].
+  std::vector<glm::vec3> irradiance(const SortedPhotons& photons, const std::vector<Query>& queries) {
+    const PlacedQueries placed = place(queries);
+    gather(photons, placed);
+    return irradiance_of(device_, placed);
+  }
 
  private:
   static constexpr size_t run_length = 1000;
@@ -132,15 +161,7 @@ class Gatherer {
     return runs;
   }
 
-  /// Radiance of the queries.
-  std::vector<glm::vec3> run(const cl::Kernel& kernel, const char* stage, const PhotonMap& map,
-                             const std::vector<Query>& queries) {
-    std::vector<glm::vec3> values = gathered_at(device_, kernel, stage, map, scene_, queries);
-    for (size_t i = 0; i < values.size(); ++i) values[i] *= queries[i].diffuse * std::numbers::inv_pi_v<float>;
-    return values;
-  }
-
-  Device device_;
+  Device& device_;
   Kernels kernels_;
   Scene scene_;
   SceneData data_;
