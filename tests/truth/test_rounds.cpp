@@ -1,4 +1,4 @@
-// Rendering to an error: the true one lies in the interval that is told as often as it claims.
+// Rendering to an error: the true one lies in the interval that is told as often as it claims. Adaptive sampling.
 
 #include <doctest/doctest.h>
 
@@ -35,10 +35,8 @@ struct Coverage {
   }
 };
 
-}  // namespace
-
-TEST_CASE("rounds: the error of a picture by camera rays alone is what it is told to be") {
-  Device device;
+/// A ball of glass over a plane that a lamp lights, without its caustic.
+Scene ball_under_lamp() {
   Scene scene;
   scene.camera = {CameraType::pinhole, {0.9, 0.7, 0}, {0, 0.2, 0}, {0, 1, 0}, 40};
   scene.film.width = scene.film.height = 24;
@@ -48,6 +46,14 @@ TEST_CASE("rounds: the error of a picture by camera rays alone is what it is tol
   add(scene, Sphere{{0, 0.3, 0}, 0.2}, 1);
   scene.lights.push_back({"lamp", {}, PointLight{{0.2, 1, 0.1}, Spectrum(1.0)}});
   scene.render.caustics = false;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("rounds: the error of a picture by camera rays alone is what it is told to be") {
+  Device device;
+  Scene scene = ball_under_lamp();
   scene.render.samples = 1 << 14;
   const std::vector<double> truth = render(scene, device, {}).film.mean("radiance");
   scene.render.target_error = 0.01;
@@ -90,6 +96,35 @@ TEST_CASE("rounds: the error of a caustic, noise and bias, is within what it is 
     CHECK(coverage.met >= 43);
     CHECK(coverage.told > coverage.truth);
   }
+}
+
+TEST_CASE("adaptive sampling: as many samples leave less error, and none on average") {
+  Device device;
+  Scene scene = ball_under_lamp();
+  scene.render.samples = 1 << 14;
+  const std::vector<double> truth = render(scene, device, {}).film.mean("radiance");
+  scene.render.samples = 32;
+  const int pictures = 40;
+  double errors[2] = {}, errors_of_mean[2] = {};
+  for (const bool adaptive : {false, true}) {
+    scene.render.adaptive = adaptive;
+    std::vector<double> mean(truth.size(), 0.0);
+    for (int seed = 1; seed <= pictures; ++seed) {
+      scene.render.seed = static_cast<uint64_t>(seed);
+      const RenderResult result = render(scene, device, {});
+      CHECK(result.samples <= 40.0);
+      CHECK(result.samples >= 16.0);
+      const std::vector<double> picture = result.film.mean("radiance");
+      errors[adaptive] += std::pow(relative_error(picture, truth), 2.0) / pictures;
+      for (size_t i = 0; i < mean.size(); ++i) mean[i] += picture[i] / pictures;
+    }
+    errors_of_mean[adaptive] = std::pow(relative_error(mean, truth), 2.0);
+  }
+  MESSAGE("squared errors " << errors[0] << " and " << errors[1] << ", of the mean of " << pictures << ' ' << errors_of_mean[0]
+                            << " and " << errors_of_mean[1]);
+  CHECK(errors[1] < 0.6 * errors[0]);
+  // Without bias, the mean of N pictures has an N-th of the squared error.
+  CHECK(errors_of_mean[1] < 2.0 / pictures * errors[1]);
 }
 
 TEST_CASE("rounds: a time limit ends them, with a picture and what is known of its error") {
