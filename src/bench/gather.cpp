@@ -112,12 +112,14 @@ float radius_for(const Flann& flann, const std::vector<Query>& queries) {
   return high;
 }
 
-/// The mean difference of an answer, relative to it. Single ones differ by a photon, where two are equally far.
+/// The mean difference of the answers, relative to their mean. Single ones differ by a photon, where two are equally far.
 double mean_difference(const std::vector<vec3>& ours, const std::vector<vec3>& theirs) {
-  double sum = 0.0;
-  for (size_t i = 0; i < ours.size(); ++i)
-    sum += static_cast<double>(glm::length(ours[i] - theirs[i]) / glm::length(theirs[i]));
-  return sum / static_cast<double>(ours.size());
+  double difference = 0.0, sum = 0.0;
+  for (size_t i = 0; i < ours.size(); ++i) {
+    difference += static_cast<double>(glm::length(ours[i] - theirs[i]));
+    sum += static_cast<double>(glm::length(theirs[i]));
+  }
+  return difference / sum;
 }
 
 }  // namespace
@@ -143,6 +145,7 @@ BenchResult bench_gather(const BenchContext& context) {
     sort_into_rows(coherent);
     const Flann flann(photons);
     const float radius = radius_for(flann, random);
+    const double found = flann.found(random, radius);
     for (size_t k = 0; k < result.plot.lines.size(); ++k) {
       const bool nearest = k >= 2;
       const std::vector<Query>& queries = k % 2 == 0 ? coherent : random;
@@ -158,7 +161,7 @@ BenchResult bench_gather(const BenchContext& context) {
       PlotLine& line = result.plot.lines[k];
       const double millions = 1e-6 * static_cast<double>(queries.size());
       result.rows.push_back({line.name, {{"photons", static_cast<double>(n_photons)},
-                                         {"a query", nearest ? wanted : flann.found(queries, radius)},
+                                         {"a query", nearest ? wanted : found},
                                          {"M queries/" + unit, millions / both.ours()},
                                          {"nanoflann's", millions / both.theirs()}, {"times as fast", both.speedup()},
                                          {"difference", mean_difference(gatherer.irradiance(sorted, queries), theirs)}}});
