@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "scene/scene_file.hpp"
 #include "verify/caustic_plate.hpp"
 
 namespace vitrum {
@@ -100,8 +101,10 @@ TEST_CASE("rounds: the error of a caustic, noise and bias, is within what it is 
 
 TEST_CASE("adaptive sampling: as many samples leave less error, and none on average") {
   Device device;
-  Scene scene = ball_under_lamp();
-  scene.render.samples = 1 << 14;
+  // The lamp's highlights are small and bright.
+  Scene scene = load_scene(VITRUM_SOURCE_DIR "/models/default_scene/scene.toml",
+                           {"film.size=[40, 40]", "render.caustics=false", "render.textures=false"});
+  scene.render.samples = 1 << 15;
   const std::vector<double> truth = render(scene, device, {}).film.mean("radiance");
   scene.render.samples = 32;
   const int pictures = 40;
@@ -112,7 +115,7 @@ TEST_CASE("adaptive sampling: as many samples leave less error, and none on aver
     for (int seed = 1; seed <= pictures; ++seed) {
       scene.render.seed = static_cast<uint64_t>(seed);
       const RenderResult result = render(scene, device, {});
-      CHECK(result.samples <= 40.0);
+      CHECK(result.samples <= 44.0);  // neighbours in a packet take as many as the neediest
       CHECK(result.samples >= 16.0);
       const std::vector<double> picture = result.film.mean("radiance");
       errors[adaptive] += std::pow(relative_error(picture, truth), 2.0) / pictures;
@@ -120,9 +123,9 @@ TEST_CASE("adaptive sampling: as many samples leave less error, and none on aver
     }
     errors_of_mean[adaptive] = std::pow(relative_error(mean, truth), 2.0);
   }
-  MESSAGE("squared errors " << errors[0] << " and " << errors[1] << ", of the mean of " << pictures << ' ' << errors_of_mean[0]
+  MESSAGE("squared errors " << errors[0] << " and " << errors[1] << ", of means of " << pictures << ": " << errors_of_mean[0]
                             << " and " << errors_of_mean[1]);
-  CHECK(errors[1] < 0.6 * errors[0]);
+  CHECK(errors[1] < 0.5 * errors[0]);
   // Without bias, the mean of N pictures has an N-th of the squared error.
   CHECK(errors_of_mean[1] < 2.0 / pictures * errors[1]);
 }
