@@ -24,21 +24,21 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 double trace_adaptively(Passes& passes, uint64_t pass, uint32_t replicate, uint32_t first, uint32_t samples, int width,
                         RenderResult& result, const std::function<void(double)>& progress) {
   const auto pixels = static_cast<uint32_t>(width * result.film.height());
-  double taken = 0.0;
-  SampleCounts counts = SampleCounts::uniform(pixels, samples / 8);
-  for (const double begin : {0.0, 0.25}) {
-    HalvedPass part = passes.trace_halves(replicate, first, counts, [&](double d) {
-      progress(begin + (begin > 0.0 ? 0.75 : 0.25) * d);
-    });
-    const double per_pixel = 2.0 * static_cast<double>(counts.total()) / pixels;
-    taken += per_pixel;
+  const auto mean = [pixels](const SampleCounts& counts) { return 2.0 * static_cast<double>(counts.total()) / pixels; };
+  const SampleCounts alike = SampleCounts::uniform(pixels, samples / 8);
+  HalvedPass pilot = passes.trace_halves(replicate, first, alike, [&](double d) { progress(0.25 * d); });
+  const SampleCounts rest = SampleCounts::of(allot_samples(pilot.variance, width, 0.5 * (samples - mean(alike))));
+  const double taken = mean(alike) + mean(rest);
+  const auto add = [&](HalvedPass& part, double cost) {
+    const double weight = taken * cost * cost / (mean(alike) * mean(alike) + mean(rest) * mean(rest));
     for (PlaneSums& plane : part.means) {
-      for (float& value : plane.values) value *= static_cast<float>(per_pixel * per_pixel);
-      result.rejected_values += result.film.add(pass, plane.name, plane.channels, plane.values, per_pixel * per_pixel);
+      for (float& value : plane.values) value *= static_cast<float>(weight);
+      result.rejected_values += result.film.add(pass, plane.name, plane.channels, plane.values, weight);
     }
-    first += 2 * counts.most();
-    counts = SampleCounts::of(allot_samples(part.variance, width, 0.5 * (samples - per_pixel)));
-  }
+  };
+  add(pilot, mean(alike));
+  HalvedPass others = passes.trace_halves(replicate, first + 2 * alike.most(), rest, [&](double d) { progress(0.25 + 0.75 * d); });
+  add(others, mean(rest));
   return taken;
 }
 
