@@ -32,7 +32,8 @@ std::vector<Case> plates(bool quick) {
   const auto add_footprints = [&](const char* name, const CausticPlate& plate) {
     add_case(name, plate);
     cases.back().scene.photons.estimate = PhotonEstimate::footprints;
-    cases.back().worth = 16;
+    cases.back().scene.render.adaptive = true;
+    cases.back().worth = 12;
   };
   const CausticPlate exact;
   add_case("exact ball", exact);

@@ -228,10 +228,11 @@ def all_systems(folder, scratch, program):
         return system
 
     return [in_folder(system) for system in (
-        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, the rest by default; samples a pixel grow with the "
-               "photons as in `vitrum bench photons`, but to 1,024.",
+        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, with footprints `render.adaptive`, the rest by default; samples "
+               "a pixel grow with the photons as in `vitrum bench photons`, but to 1,024.",
                (VitrumLine("footprints", {"ball": photons(10), "mesh": photons(10)},
-                           ("--set", "photons.estimate=footprints"), samples_worth=16),
+                           ("--set", "photons.estimate=footprints", "--set", "render.adaptive=true"),
+                           samples_worth=12),
                 VitrumLine("automatic radius", {"ball": photons(12), "mesh": photons(11)},
                            ("--set", "photons.estimate=automatic"))),
                ("mesh_ball.py",), program=program),
