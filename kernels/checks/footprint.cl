@@ -4,6 +4,7 @@
 
 #define INPUT(field) LOAD(in + (field) * count, i)
 #define OUTPUT(field, value) STORE(out + (field) * count, i, value)
+#define OUTPUT3(field, vector) OUTPUT(field, (vector).x), OUTPUT((field) + 1, (vector).y), OUTPUT((field) + 2, (vector).z)
 
 KERNEL void footprints(const LatticeData lattice, const FootprintLimits limits, __global const float* landings,
                        __global const float* in, __global float* out, const uint count) {
@@ -11,18 +12,10 @@ KERNEL void footprints(const LatticeData lattice, const FootprintLimits limits, 
   if (i >= count) return;
   const Footprint f = footprint_of(lattice, landings, limits, AS_UINT(INPUT(0)), INPUT(1),
                                    make_vec3(INPUT(2), INPUT(3), INPUT(4)), make_vec3(INPUT(5), INPUT(6), INPUT(7)));
-  OUTPUT(0, f.side_u.x);
-  OUTPUT(1, f.side_u.y);
-  OUTPUT(2, f.side_u.z);
-  OUTPUT(3, f.side_v.x);
-  OUTPUT(4, f.side_v.y);
-  OUTPUT(5, f.side_v.z);
-  OUTPUT(6, f.across_u.x);
-  OUTPUT(7, f.across_u.y);
-  OUTPUT(8, f.across_u.z);
-  OUTPUT(9, f.across_v.x);
-  OUTPUT(10, f.across_v.y);
-  OUTPUT(11, f.across_v.z);
+  OUTPUT3(0, f.side_u);
+  OUTPUT3(3, f.side_v);
+  OUTPUT3(6, f.across_u);
+  OUTPUT3(9, f.across_v);
   OUTPUT(12, f.area);
   OUTPUT(13, TO_FLOAT(AS_INT(f.parts_u)));
   OUTPUT(14, TO_FLOAT(AS_INT(f.parts_v)));

@@ -3,6 +3,7 @@
 #include "bench/benchmarks.hpp"
 #include "bench/timed_render.hpp"
 #include "core/fit.hpp"
+#include "film/metrics.hpp"
 #include "verify/scenes.hpp"
 
 namespace vitrum {
@@ -44,7 +45,7 @@ BenchResult bench_camera(const BenchContext& context) {
   for (int samples = 1; samples <= most; samples *= 4) {
     scene.render.samples = samples;
     const RenderResult r = timed_render(context, scene, View::beauty);
-    const double seconds = compute_seconds(r), error = relative_error(r.film.mean("radiance"), truth);
+    const double seconds = compute_seconds(r), error = error_over_mean(r.film.mean("radiance"), truth);
     const double rays = static_cast<double>(r.rays.camera + r.rays.secondary + r.rays.shadow);
     result.rows.push_back({context.scene ? "scene" : "two balls", {{"samples", static_cast<double>(samples)}, {"CPU s", seconds}, {"error", error},
                                          {"M rays/CPU s", 1e-6 * rays / seconds}}});

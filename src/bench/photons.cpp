@@ -5,6 +5,7 @@
 #include "bench/benchmarks.hpp"
 #include "bench/timed_render.hpp"
 #include "core/fit.hpp"
+#include "film/metrics.hpp"
 #include "verify/caustic_plate.hpp"
 
 namespace vitrum {
@@ -58,7 +59,7 @@ Case long_run(const BenchContext& context, uint64_t most) {
   options.kernels = context.kernels;
   options.views = {View::caustics};
   const std::vector<double> truth = render(scene, context.device, options).film.mean("caustics");
-  return {"scene", *context.scene, [truth](const RenderResult& result) { return relative_error(result.film.mean("caustics"), truth); },
+  return {"scene", *context.scene, [truth](const RenderResult& result) { return error_over_mean(result.film.mean("caustics"), truth); },
           {"beauty", 3, {truth.begin(), truth.end()}}};
 }
 

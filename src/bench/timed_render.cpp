@@ -1,7 +1,5 @@
 #include "bench/timed_render.hpp"
 
-#include <cmath>
-
 namespace vitrum {
 
 RenderResult timed_render(const BenchContext& context, const Scene& scene, View view) {
@@ -15,16 +13,6 @@ RenderResult timed_render(const BenchContext& context, const Scene& scene, View 
     if (compute_seconds(next) < compute_seconds(best)) best = std::move(next);
   }
   return best;
-}
-
-double relative_error(const std::vector<double>& picture, const std::vector<double>& truth) {
-  double squares = 0.0, sum = 0.0;
-  for (size_t i = 0; i < truth.size(); ++i) {
-    squares += (picture[i] - truth[i]) * (picture[i] - truth[i]);
-    sum += truth[i];
-  }
-  const double n = static_cast<double>(truth.size());
-  return std::sqrt(squares / n) / (sum / n);
 }
 
 double compute_seconds(const RenderResult& result) {

@@ -15,9 +15,6 @@ RenderResult timed_render(const BenchContext& context, const Scene& scene, View 
 /// What the long run of a user's scene is: `truth_factor` times the photons, or samples, of the longest that is measured.
 constexpr uint64_t truth_factor = 16;
 
-/// Root of the mean squared difference over all pixels and channels, relative to the mean of `truth`.
-double relative_error(const std::vector<double>& picture, const std::vector<double>& truth);
-
 /// Processor time of photons and camera rays together, without what comes before the first pass [s].
 double compute_seconds(const RenderResult& result);
 

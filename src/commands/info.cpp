@@ -57,7 +57,7 @@ void run_info(const SceneArguments& arguments) {
   std::printf("camera     pinhole at %s m, looks at %s m, %.6g degrees high\n", text_of(camera.eye).c_str(),
               text_of(camera.look_at).c_str(), camera.vertical_fov);
   // As many samples and photons as a target takes are not known before.
-  const bool by_rounds = scene.render.target_error > 0.0 || scene.render.time_limit > 0.0;
+  const bool by_rounds = scene.render.by_rounds();
   std::string sampling = by_rounds ? "sampled" : counted(static_cast<size_t>(scene.render.samples), "sample") + " each";
   if (scene.render.target_error > 0.0) sampling += printed(" to a relative error of %g", scene.render.target_error);
   if (scene.render.time_limit > 0.0) sampling += printed(" for %g s at most", scene.render.time_limit);

@@ -74,7 +74,8 @@ std::vector<View> views_of_names(const std::vector<std::string>& names) {
 }
 
 /// "relative error .021 (95 %: .019 to .024) after 5 rounds, 120 samples a pixel and 2000000 photons".
-std::string rounds_text(const RoundsResult& rounds) {
+std::string rounds_text(const RenderResult& result) {
+  const RoundsResult& rounds = *result.rounds;
   const RelativeError& error = rounds.error;
   const std::string reason = rounds.end == RoundsResult::End::target ? ""
                              : rounds.end == RoundsResult::End::time ? "time is up: "
@@ -82,7 +83,7 @@ std::string rounds_text(const RoundsResult& rounds) {
   const std::string bias = error.bias_known ? "" : ", and a bias by the photons that one round does not tell";
   return reason + printed("relative error %.3g (%.0f %%: %.3g to %.3g)%s after %d round%s, %.3g samples a pixel and %llu photons",
                           error.value, 100.0 * RoundsResult::confidence, error.low, error.high, bias.c_str(), rounds.rounds,
-                          rounds.rounds == 1 ? "" : "s", rounds.samples, static_cast<unsigned long long>(rounds.photons));
+                          rounds.rounds == 1 ? "" : "s", result.samples, static_cast<unsigned long long>(result.photons.photons_shot));
 }
 
 void run_render(const RenderArguments& arguments) {
@@ -115,7 +116,7 @@ void run_render(const RenderArguments& arguments) {
   result.seconds["load"] = load_seconds;
   result.seconds["first pixels"] = std::chrono::duration<double>(result.first_pixels - start).count();
 
-  if (result.rounds) note(rounds_text(*result.rounds));
+  if (result.rounds) note(rounds_text(result));
 
   const auto write_start = std::chrono::steady_clock::now();
   std::vector<PictureLayer> layers;

@@ -106,7 +106,7 @@ std::string render_report(const Scene& scene, const Device& device, const Render
   else
     json["settings"]["reflectance"] = "fresnel";
   if (result.features.caustics)
-    json["settings"]["photons"] = {{"count", result.rounds ? result.rounds->photons : scene.photons.count},
+    json["settings"]["photons"] = {{"count", result.rounds ? result.photons.photons_shot : scene.photons.count},
                                    {"sampling", name_of(scene.photons.sampling)},
                                    {"estimate", name_of(scene.photons.estimate)},
                                    {"radius_m", result.photon_radius},

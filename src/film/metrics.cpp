@@ -106,6 +106,16 @@ PictureError picture_error(const Picture& picture, const Picture& truth, double 
   return values_error(values_of(picture), values_of(truth), picture.width, picture.height, 3, epsilon);
 }
 
+double error_over_mean(std::span<const double> values, std::span<const double> truth) {
+  double squares = 0.0, sum = 0.0;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    squares += (values[i] - truth[i]) * (values[i] - truth[i]);
+    sum += truth[i];
+  }
+  const double n = static_cast<double>(truth.size());
+  return std::sqrt(squares / n) / (sum / n);
+}
+
 std::vector<float> pixel_differences(std::span<const float> values, std::span<const float> truth, int channels) {
   assert(values.size() == truth.size());
   std::vector<float> differences(values.size() / size_t(channels), 0.0f);

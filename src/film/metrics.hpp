@@ -38,6 +38,10 @@ PictureError values_error(std::span<const float> values, std::span<const float> 
 /// values_error of two pictures. Throws Error if their sizes differ.
 PictureError picture_error(const Picture& picture, const Picture& truth, double epsilon = default_epsilon);
 
+/// Root of the mean squared difference over all values, relative to the mean of `truth`, of as many. Not relative_rmse,
+/// which is relative value by value.
+double error_over_mean(std::span<const double> values, std::span<const double> truth);
+
 /// The largest |v - t| of each pixel's channels, as values_error takes it.
 std::vector<float> pixel_differences(std::span<const float> values, std::span<const float> truth, int channels);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <utility>
 
@@ -135,7 +134,7 @@ HalvedPass Passes::trace_halves(uint32_t replicate, uint32_t first, const Sample
     PlaneSums& sums = halves[0][plane];
     const std::vector<float>& rest = halves[1][plane].values;
     const auto channels = static_cast<size_t>(sums.channels);
-    const bool is_radiance = std::strcmp(sums.name, "radiance") == 0;
+    const bool is_radiance = sums.name == "radiance";
     for (size_t i = 0; i < sums.values.size(); ++i) {
       const float share = inverse[i / channels];
       // Half the difference of the halves' means is as far off as their mean is.

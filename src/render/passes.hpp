@@ -18,7 +18,7 @@ namespace vitrum {
 
 /// Sums of samples, by the film's plane that they belong to.
 struct PlaneSums {
-  const char* name = "";
+  std::string name;
   int channels = 3;
   std::vector<float> values;    ///< width * height * channels, interleaved
 };

@@ -109,9 +109,8 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
   const auto wants = [&](View view) {
     return std::find(options.views.begin(), options.views.end(), view) != options.views.end();
   };
-  const bool by_rounds = scene.render.target_error > 0.0 || scene.render.time_limit > 0.0;
   for (const View view : {View::error, View::bias})
-    if (wants(view) && scene.render.samples < 2 && !by_rounds)
+    if (wants(view) && scene.render.samples < 2 && !scene.render.by_rounds())
       throw Error({std::string("--view ") + view_name(view)}, "one sample a pixel has no scatter",
                   "take at least --samples 2; 8 and their multiples tell the error best");
   if (wants(View::bias) && (features.nearest_photons || features.footprints))
@@ -135,7 +134,7 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     return Film(scene.film.width, scene.film.height, static_cast<int>(std::min<uint64_t>(replicates, Film::max_replicates)));
   };
   Progress progress("render");
-  if (by_rounds) {
+  if (scene.render.by_rounds()) {
     result.film = film_of(wants_scatter ? Film::max_replicates : replicates_of_rounds);
     result.rounds = run_rounds(context, passes, result.film, options.start, progress);
     result.rejected_values = result.rounds->rejected_values;

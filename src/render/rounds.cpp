@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <string_view>
 
 #include "film/bias_fit.hpp"
-#include "film/picture_error.hpp"
+#include "film/mean_square.hpp"
 #include "render/sample_allocation.hpp"
 
 namespace vitrum {
@@ -138,7 +137,6 @@ class Rounds {
       plan.share = round.share / rows;
       plan.samples = static_cast<int>(std::max(1.0, 2.0 * replicates() * round.half_samples));
       passes_.shoot(plan, [&](double d) { tell(done + step * 0.5 * d); });
-      result_.photons += plan.count;
       if (const std::vector<float> dots = passes_.dots(); !dots.empty()) film_.add(pass, "photons", 1, dots, 1.0);
     }
     HalvedPass traced = passes_.trace_halves(replicate, samples_before_ + 2 * row * counts.most(), counts,
@@ -146,7 +144,7 @@ class Rounds {
     for (size_t i = 0; i < pixels_; ++i) scatter_[i] += traced.variance[i];
     round_camera_error_ += traced.error;
     for (PlaneSums& plane : traced.means) {
-      if (std::string_view(plane.name) == "radiance")
+      if (plane.name == "radiance")
         for (size_t i = 0; i < plane.values.size(); ++i)
           if (std::isfinite(plane.values[i])) pictures_[replicate][i] += static_cast<double>(plane.values[i]) / rows;
       for (float& value : plane.values) value *= static_cast<float>(weight_ / rows);

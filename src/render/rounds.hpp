@@ -32,7 +32,6 @@ struct RoundsResult {
   RelativeError error;
   int rounds = 0, passes = 0;
   double samples = 0.0;         ///< of a pixel, mean
-  uint64_t photons = 0;
   uint64_t rejected_values = 0; ///< as Film::add counts them
 };
 

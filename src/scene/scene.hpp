@@ -199,6 +199,9 @@ struct RenderSettings {
   double target_error = 0.0;                ///< relative error of the picture at which to stop; 0: none
   double time_limit = 0.0;                  ///< [s] after which to stop; 0: none. With either, samples, passes and photons.count
                                             ///< are chosen on the way
+
+  /// Whether passes go on until an error or a time is met.
+  bool by_rounds() const { return target_error > 0.0 || time_limit > 0.0; }
 };
 
 /// The most photons that PhotonEstimate::nearest can search for.

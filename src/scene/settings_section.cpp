@@ -64,7 +64,7 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
   if (settings.progressive && settings.estimate == PhotonEstimate::footprints)
     table.fail("progressive", "needs a radius that can shrink, which footprints do not have",
                "leave it out: footprints shrink as photons.count grows");
-  if (render.target_error > 0.0 || render.time_limit > 0.0) {
+  if (render.by_rounds()) {
     const std::string problem = std::string("does not go with render.") + (render.target_error > 0.0 ? "target_error" : "time_limit");
     if (settings.estimate == PhotonEstimate::fixed_radius || settings.estimate == PhotonEstimate::nearest)
       table.fail("estimate", problem + ": its error does not fall with the number of photons",

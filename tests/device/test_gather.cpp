@@ -106,7 +106,7 @@ void check(const std::vector<vec3>& irradiance, const std::vector<Query>& querie
     }
     for (int axis = 0; axis < 3; ++axis) {
       const double found = static_cast<double>(irradiance[i][axis]), right = answer.irradiance[axis];
-      if (!(std::abs(found - right) <= 2e-5 * right + answer.rounding[axis]) && ++wrong < 5)
+      if (!(std::abs(found - right) <= 2e-6 * right + answer.rounding[axis]) && ++wrong < 5)
         MESSAGE("query " << i << ": " << found << " instead of " << right);
     }
   }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "film/metrics.hpp"
 #include "scene/scene_file.hpp"
 #include "verify/caustic_plate.hpp"
 
@@ -11,16 +12,6 @@ namespace vitrum {
 namespace {
 
 constexpr int seeds = 100;
-
-/// Root mean squared difference over all values, relative to the mean of the truth.
-double relative_error(const std::vector<double>& picture, const std::vector<double>& truth) {
-  double squares = 0.0, mean = 0.0;
-  for (size_t i = 0; i < truth.size(); ++i) {
-    squares += (picture[i] - truth[i]) * (picture[i] - truth[i]);
-    mean += truth[i];
-  }
-  return std::sqrt(squares * static_cast<double>(truth.size())) / mean;
-}
 
 struct Coverage {
   int within = 0, met = 0;      ///< intervals that hold the truth; pictures whose true error is below the target
@@ -62,7 +53,7 @@ TEST_CASE("rounds: the error of a picture by camera rays alone is what it is tol
   for (int seed = 1; seed <= seeds; ++seed) {
     scene.render.seed = static_cast<uint64_t>(seed);
     const RenderResult result = render(scene, device, {});
-    coverage.add(*result.rounds, relative_error(result.film.mean("radiance"), truth), scene.render.target_error);
+    coverage.add(*result.rounds, error_over_mean(result.film.mean("radiance"), truth), scene.render.target_error);
     CHECK(result.rounds->error.bias == 0.0);
   }
   MESSAGE("within " << coverage.within << ", met " << coverage.met << ", told " << coverage.told / seeds << ", true "
@@ -88,7 +79,7 @@ TEST_CASE("rounds: the error of a caustic, noise and bias, is within what it is 
     for (int seed = 1; seed <= seeds / 2; ++seed) {
       scene.render.seed = static_cast<uint64_t>(seed);
       const RenderResult result = render(scene, device, options);
-      coverage.add(*result.rounds, relative_error(CausticPlate::irradiance(result), plate.truth()), scene.render.target_error);
+      coverage.add(*result.rounds, error_over_mean(CausticPlate::irradiance(result), plate.truth()), scene.render.target_error);
     }
     MESSAGE("within " << coverage.within << ", met " << coverage.met << ", told " << 2 * coverage.told / seeds << ", true "
                       << 2 * coverage.truth / seeds);
@@ -118,10 +109,10 @@ TEST_CASE("adaptive sampling: as many samples leave less error, and none on aver
       CHECK(result.samples <= 44.0);  // neighbours in a packet take as many as the neediest
       CHECK(result.samples >= 16.0);
       const std::vector<double> picture = result.film.mean("radiance");
-      errors[adaptive] += std::pow(relative_error(picture, truth), 2.0) / pictures;
+      errors[adaptive] += std::pow(error_over_mean(picture, truth), 2.0) / pictures;
       for (size_t i = 0; i < mean.size(); ++i) mean[i] += picture[i] / pictures;
     }
-    errors_of_mean[adaptive] = std::pow(relative_error(mean, truth), 2.0);
+    errors_of_mean[adaptive] = std::pow(error_over_mean(mean, truth), 2.0);
   }
   MESSAGE("squared errors " << errors[0] << " and " << errors[1] << ", of means of " << pictures << ": " << errors_of_mean[0]
                             << " and " << errors_of_mean[1]);

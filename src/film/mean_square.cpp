@@ -1,4 +1,4 @@
-#include "film/picture_error.hpp"
+#include "film/mean_square.hpp"
 
 #include <algorithm>
 #include <cassert>

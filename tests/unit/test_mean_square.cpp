@@ -6,7 +6,7 @@
 #include <random>
 
 #include "film/bias_fit.hpp"
-#include "film/picture_error.hpp"
+#include "film/mean_square.hpp"
 
 using namespace vitrum;
 
