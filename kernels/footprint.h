@@ -45,12 +45,12 @@ FUNCTION Float parts_of(const Float side, const float largest) {
 // as far, it is their mean; else the nearer's, so that footprints do not bridge what a facet's edge has torn apart.
 FUNCTION Vec3 difference(__global const float* landings, const Vec3 place, const Uint way, const Uint ahead,
                          const Mask is_ahead, const Uint behind, const Mask is_behind, Mask* found, Mask* at_edge) {
-  const Uint to = 4u * (is_ahead ? ahead : (Uint)0);
-  const Uint from = 4u * (is_behind ? behind : (Uint)0);
+  const Uint to = LANDING_ROW * (is_ahead ? ahead : (Uint)0);
+  const Uint from = LANDING_ROW * (is_behind ? behind : (Uint)0);
   const Vec3 forward = subtract3(GATHER3(landings, to), place);
   const Vec3 backward = subtract3(place, GATHER3(landings, from));
-  const Mask has_ahead = is_ahead & (AS_UINT(GATHER(Float, landings, to + 3u)) == way);
-  const Mask has_behind = is_behind & (AS_UINT(GATHER(Float, landings, from + 3u)) == way);
+  const Mask has_ahead = is_ahead & (AS_UINT(GATHER(Float, landings, to + LANDING_WAY)) == way);
+  const Mask has_behind = is_behind & (AS_UINT(GATHER(Float, landings, from + LANDING_WAY)) == way);
   const Float forward2 = dot3(forward, forward);
   const Float backward2 = dot3(backward, backward);
   const Mask alike = has_ahead & has_behind & (forward2 < 4.0f * backward2) & (backward2 < 4.0f * forward2);
@@ -74,7 +74,7 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   Vec3 u = make_vec3(0.0f, 0.0f, 0.0f);
   Vec3 v = u;
   if (ANY(on_lattice)) {
-    const Uint way = AS_UINT(GATHER(Float, landings, 4u * own + 3u));
+    const Uint way = AS_UINT(GATHER(Float, landings, LANDING_ROW * own + LANDING_WAY));
     u = difference(landings, place, way, own + (1u << lattice.log2_rows), on_lattice & (column + 1u < lattice.columns),
                    own - (1u << lattice.log2_rows), on_lattice & (column > 0u), &found, &at_edge);
     v = difference(landings, place, way, own + 1u, on_lattice & (row < row_mask), own - 1u, on_lattice & (row > 0u), &found,

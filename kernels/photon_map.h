@@ -44,6 +44,10 @@
 #define ARRIVED_SPACING 11     // how much farther than all photons those are apart that went its way by chance
 #define ARRIVED_FIELDS 12
 #define NO_POINT 0xffffffffu
+// Where a point of the lattice arrived, at [LANDING_ROW * point]: its place (3 floats), and
+#define LANDING_WAY 3          // uint: hash of its way; 0: it did not arrive
+#define LANDING_POWER 4        // 3 floats [W]
+#define LANDING_ROW 8u
 
 #ifdef __OPENCL_VERSION__
 #include "switches.h"

@@ -1,14 +1,16 @@
 // Stage camera: pixels from the eye to the film.
-// Reads: the scene, the camera, samples, the photon map. Adds to: the film's planes, counts.
+// Reads: the scene, the camera, samples, the photon map, drawn patches. Adds to: the film's planes, counts.
 // A work-item minds WIDTH neighbouring pixels. Where glass splits their rays, the packet of reflected rays waits on a
 // stack of its own while the refracted ones are followed. So nothing depends on timing, and samples may be dealt out to
 // launches in any way: a pixel's shares are added up in the same order.
 // Pixels stand in slots, in any order, so that those that get many samples can be neighbours. The film is by slot.
 #include "film.h"
 #include "gather.h"
+#include "patch.h"
 #include "sampler.h"
 #include "shade.h"
 #include "trace.h"
+#include "view.h"
 
 // Rays through `pixel` for a sample. `jitter` 0: through the pixel's centre.
 FUNCTION CameraRays camera_rays(__global const CameraData* camera, __global const CameraSample* sample,
@@ -22,13 +24,9 @@ FUNCTION CameraRays camera_rays(__global const CameraData* camera, __global cons
   const Float shifted_y = unit_float(hash32(path + 2)) + sample->y;
   const Float jx = jitter ? shifted_x - floor(shifted_x) : 0.5f;
   const Float jy = jitter ? shifted_y - floor(shifted_y) : 0.5f;
-  const Float x = fma(TO_FLOAT(AS_INT(column)) + jx, (Float)camera->step_x, (Float)camera->left);
-  const Float y = fma(TO_FLOAT(AS_INT(row)) + jy, (Float)-camera->step_y, (Float)camera->top);
-
   CameraRays rays;
   rays.rays.origin = uniform3(camera->eye);
-  rays.rays.direction =
-      normalize3(along3(along3(uniform3(camera->forward), x, uniform3(camera->right)), y, uniform3(camera->up)));
+  rays.rays.direction = direction_through(camera, TO_FLOAT(AS_INT(column)) + jx, TO_FLOAT(AS_INT(row)) + jy);
   rays.rays.t_min = 0.0f;
   rays.rays.t_max = INFINITY;
   rays.weight = make_vec3(1.0f, 1.0f, 1.0f);
@@ -89,7 +87,7 @@ FUNCTION void store_film3(__global float* film, uint plane, uint stride, uint i,
   STORE(film, (plane + 2) * stride + i, value.z);
 }
 
-BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits limits,
+BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, const CameraLimits limits,
                   __global const CameraData* camera_data, __global const CameraSample* samples,
                   const uint first_sample, const uint last_sample, const uint jitter, const Uint pixels, const uint i,
                   const uint last_slot, const uint eye_media, const uint n_lights, const uint first_hits,
@@ -101,6 +99,10 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
 #endif
   Vec3 beauty = load_film3(film, FILM_BEAUTY, film_stride, i);
   Float cut = LOAD(film, FILM_CUT * film_stride + i);
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  const Uint row = pixels / camera_data->width;
+  const ShownPlane shown = plane_shown(view, pixels - row * camera_data->width, row);
+#endif
   uint secondary_rays = 0;
   uint shadow_rays = 0;
 
@@ -121,8 +123,19 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const CameraLimits lim
                                                &shadow_rays));
 #endif
 #if CAUSTICS != CAUSTICS_NONE
-      const Mask receives =
-          camera.active & (max_channel(shading.scattering.diffuse) > 0.0f) & within_reach(&map, surface.position);
+      Mask receives = camera.active & (max_channel(shading.scattering.diffuse) > 0.0f);
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+      if (camera.depth == 0) {
+        const Vec3 outward = surface.geometric_normal;
+        const Mask drawn =
+            receives & is_on(&shown, surface.position, select3(surface.entering, outward, negate3(outward)));
+        const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, shown.irradiance));
+        radiance = select3(drawn, add3(radiance, caustic), radiance);
+        caustics = select3(drawn, add3(caustics, caustic), caustics);
+        receives &= drawn == 0;
+      }
+#endif
+      receives &= within_reach(&map, surface.position);
       if (map.count > 0 && ANY(receives)) {
         Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
         FOR_LANES(lane, receives) {
@@ -177,14 +190,15 @@ KERNEL void camera(SCENE_PARAMETERS, __global const CameraData* camera_data, __g
                    __global const uint* pixel_of_slot, __global const uint* allotted, const uint second_half,
                    const uint first_sample, const uint last_sample, const uint jitter, const uint first_slot,
                    const uint last_slot, const uint max_depth, const float min_weight, const float eye_index,
-                   const uint eye_media, const uint n_lights, const uint first_hits PHOTON_MAP_PARAMETERS,
-                   const uint film_stride, __global float* film, __global uint* counts) {
+                   const uint eye_media, const uint n_lights, const uint first_hits PHOTON_MAP_PARAMETERS
+                   PATCH_VIEW_PARAMETERS, const uint film_stride, __global float* film, __global uint* counts) {
   const uint i = first_slot + get_global_id(0) * WIDTH;
   if (i >= last_slot) return;
   const uint own = allotted[i / SLOT_GROUP];
   const Scene scene = SCENE;
   const PhotonMap map = PHOTON_MAP;
+  const PatchView view = PATCH_VIEW;
   const CameraLimits limits = {max_depth, min_weight, eye_index};
-  trace_pixels(scene, map, limits, camera_data, samples + second_half * own, first_sample, min(last_sample, own), jitter,
+  trace_pixels(scene, map, view, limits, camera_data, samples + second_half * own, first_sample, min(last_sample, own), jitter,
                LOAD(pixel_of_slot, i), i, last_slot, eye_media, n_lights, first_hits, film_stride, film, counts);
 }

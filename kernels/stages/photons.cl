@@ -146,11 +146,11 @@ FUNCTION Mask are_numbers(const Photons* photons, const Vec3 arrived) {
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
 #define RUN_FIELDS ARRIVED_FIELDS
 
-// Notes where photons of the lattice arrived, for their neighbours: place and way of point i at [4 i].
+// Notes where photons of the lattice arrived, for their neighbours.
 FUNCTION void note_landings(const Photons* photons, const Mask which, __global float* landings) {
   FOR_LANES(lane, which & (photons->point != NO_POINT)) {
-    const float3 place = LANE3(photons->origin, lane);
-    vstore4((float4)(place, as_float(LANE(photons->way, uint, lane))), LANE(photons->point, uint, lane), landings);
+    const float4 arrival = (float4)(LANE3(photons->origin, lane), as_float(LANE(photons->way, uint, lane)));
+    vstore8((float8)(arrival, LANE3(photons->power, lane), 0.0f), LANE(photons->point, uint, lane), landings);
   }
 }
 #else
@@ -232,7 +232,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
       // A way that no photon has, until it arrives.
       FOR_LANES(lane, photons.alive & (photons.point != NO_POINT)) {
-        landings[4u * LANE(photons.point, uint, lane) + 3u] = as_float(0u);
+        landings[LANDING_ROW * LANE(photons.point, uint, lane) + LANDING_WAY] = as_float(0u);
       }
 #endif
       add_power(&power[OUTCOME_ALIVE], photons.alive, photons.power);

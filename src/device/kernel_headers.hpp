@@ -22,6 +22,7 @@ using std::sqrt;
 #include "film.h"
 #include "fresnel.cl"
 #include "outcome.h"
+#include "patch.h"
 #include "photon_map.h"
 #include "sequence.h"
 #include "types.h"

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "render/patch_view.hpp"
 #include "render/photon_pass.hpp"
 #include "render/sequences.hpp"
 
@@ -89,7 +90,8 @@ struct CameraPass::State {
   }
 
   /// Samples [first, last) of the pixels in slots [first_slot, last_slot).
-  void launch(uint32_t part, uint32_t first, uint32_t last, uint32_t first_slot, uint32_t last_slot, const PhotonMap* map) {
+  void launch(uint32_t part, uint32_t first, uint32_t last, uint32_t first_slot, uint32_t last_slot, const PhotonMap* map,
+              const PatchView* patches) {
     const Scene& scene = context.scene;
     unsigned next = context.device_scene.set_arguments(kernel);
     set_arguments(kernel, next, context.device_scene.camera, samples, pixel_of_slot, of_group, part, first, last,
@@ -98,6 +100,7 @@ struct CameraPass::State {
                   static_cast<uint32_t>(scene.lights.size()), uint32_t{first_hits});
     next += 16;
     if (context.features.caustics) next = set_map_arguments(kernel, next, *map, scene);
+    if (patches) next = patches->set_arguments_of(kernel, next);
     set_arguments(kernel, next, film_stride, film, counts);
     context.device.launch("camera", kernel, context.packets(last_slot - first_slot));
   }
@@ -118,7 +121,7 @@ void CameraPass::start(uint32_t replicate, uint32_t first, SampleCounts counts, 
   s.allotted = std::move(counts);
 }
 
-void CameraPass::run(uint32_t part, uint32_t first, uint32_t last, const PhotonMap* map,
+void CameraPass::run(uint32_t part, uint32_t first, uint32_t last, const PhotonMap* map, const PatchView* patches,
                      const std::function<void(double)>& progress) {
   State& s = *state_;
   const Launches& launches = s.context.launches;
@@ -131,7 +134,7 @@ void CameraPass::run(uint32_t part, uint32_t first, uint32_t last, const PhotonM
     for (uint32_t tile = 0; tile < tiles; ++tile) {
       const auto start = std::chrono::steady_clock::now();
       const uint32_t slot = (launches.last_pixels_first ? tiles - 1 - tile : tile) * launches.pixels;
-      s.launch(part, done, until, slot, std::min(slots, slot + launches.pixels), map);
+      s.launch(part, done, until, slot, std::min(slots, slot + launches.pixels), map, patches);
       s.context.device.finish();
       progress((done - first + (tile + 1.0) / tiles * (until - done)) / (last - first));
       longest = std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

@@ -10,6 +10,7 @@
 
 namespace vitrum {
 
+class PatchView;
 struct PhotonMap;
 
 /// Rays by what they are, and what was gathered for them.
@@ -46,8 +47,10 @@ class CameraPass {
   void start(uint32_t replicate, uint32_t first, SampleCounts counts, uint32_t parts, bool is_only);
 
   /// Adds samples [first, last) of each pixel, as far as it has so many, of a part of the pass to the film's sums.
-  /// `map`: the photons to gather; nullptr where the scene has no caustics. Reports the fraction done.
-  void run(uint32_t part, uint32_t first, uint32_t last, const PhotonMap* map, const std::function<void(double)>& progress);
+  /// `map`: the photons to gather; nullptr where the scene has no caustics. `patches`: what is drawn of them; nullptr where
+  /// there are no footprints. Reports the fraction done.
+  void run(uint32_t part, uint32_t first, uint32_t last, const PhotonMap* map, const PatchView* patches,
+           const std::function<void(double)>& progress);
 
   /// The film's sums since the last call, plane after plane of width * height values (kernels/film.h), and clears them.
   std::vector<float> take_film();

@@ -48,6 +48,10 @@ Passes::Passes(const KernelContext& context, DeviceScene& device_scene, const st
       camera_(context, is_among(View::albedo, views) || is_among(View::normal, views) || is_among(View::depth, views)) {
   if (!context.features.caustics) return;
   photons_ = std::make_unique<PhotonPass>(context);
+  if (context.features.footprints) {
+    const CpuTimer timer(cpu_seconds_["camera"]);
+    patches_ = std::make_unique<PatchView>(context);
+  }
   if (wants(View::bias)) narrow_camera_ = std::make_unique<CameraPass>(context, false);
 }
 
@@ -55,7 +59,7 @@ bool Passes::wants(View view) const { return is_among(view, views_); }
 
 void Passes::shoot(const PhotonPassPlan& plan, const std::function<void(double)>& progress) {
   const CpuTimer timer(cpu_seconds_["photon"]);
-  photons_->run(plan, progress);
+  photons_->run(plan, patches_.get(), wants(View::photons), progress);
   radius_sum_ += static_cast<double>(photons_->map().radius);
 }
 
@@ -78,7 +82,7 @@ std::vector<PlaneSums> Passes::trace(uint32_t part, uint32_t first, uint32_t las
                                      const std::function<void(double)>& progress) {
   const CpuTimer timer(cpu_seconds_["camera"]);
   const size_t pixels = static_cast<size_t>(context_.scene.film.width) * static_cast<size_t>(context_.scene.film.height);
-  camera_.run(part, first, last, map(), [&](double done) {
+  camera_.run(part, first, last, map(), patches_.get(), [&](double done) {
     if (first_pixels_ == std::chrono::steady_clock::time_point()) first_pixels_ = std::chrono::steady_clock::now();
     progress(done);
   });
@@ -97,7 +101,7 @@ std::vector<PlaneSums> Passes::trace(uint32_t part, uint32_t first, uint32_t las
     // The bias of Epanechnikov's kernel goes as the square of the radius: half of it is half as much.
     PhotonMap narrow = photons_->map();
     narrow.radius *= std::numbers::sqrt2_v<float> / 2.0f;
-    narrow_camera_->run(part, first, last, &narrow, [](double) {});
+    narrow_camera_->run(part, first, last, &narrow, nullptr, [](double) {});
     const std::vector<float> less = interleaved(narrow_camera_->take_film(), pixels, FILM_CAUSTICS, 3);
     std::vector<float> bias = interleaved(planes, pixels, FILM_CAUSTICS, 3);
     for (size_t i = 0; i < bias.size(); ++i) bias[i] = 2.0f * (bias[i] - less[i]);

@@ -11,6 +11,7 @@
 
 #include "device/device_scene.hpp"
 #include "render/camera_pass.hpp"
+#include "render/patch_view.hpp"
 #include "render/photon_pass.hpp"
 #include "render/view.hpp"
 
@@ -80,6 +81,7 @@ class Passes {
   CameraPass camera_;
   std::unique_ptr<CameraPass> narrow_camera_;  ///< gathers within a smaller radius, for View::bias
   std::unique_ptr<PhotonPass> photons_;
+  std::unique_ptr<PatchView> patches_;         ///< where there are footprints
   double radius_sum_ = 0.0;
   std::map<std::string, double> cpu_seconds_;
   std::chrono::steady_clock::time_point first_pixels_{};

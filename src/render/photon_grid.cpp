@@ -137,6 +137,7 @@ void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, con
   const uint32_t log2_buckets =
       std::min({cells, most_log2_buckets, static_cast<uint32_t>(std::bit_width(expected / photons_per_bucket))});
   map_.grid.bucket_shift = cells - log2_buckets;
+  map_.count = 0;
   map_.low.fill(std::numeric_limits<float>::infinity());
   map_.high.fill(-std::numeric_limits<float>::infinity());
   map_.bucket_counts.assign(size_t{1} << log2_buckets, 0);

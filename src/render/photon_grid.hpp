@@ -42,11 +42,13 @@ class PhotonGrid {
   /// Buckets of cells, by which the photons of a launch are to be counted.
   uint32_t buckets() const { return static_cast<uint32_t>(room_.size()); }
 
+  /// How large footprints may be in the pass.
+  kernel::FootprintLimits footprint_limits() const;
   /// Takes in the photons of a launch; with footprints, of all launches of a pair of light and caster.
   void add(const PhotonRuns& runs);
   /// Sorts what was taken in.
   void finish();
-  /// Valid from finish until the next start.
+  /// Valid from finish until the next start; from start until finish without photons.
   const PhotonMap& map() const { return map_; }
 
  private:
@@ -58,7 +60,6 @@ class PhotonGrid {
   void reserve_rows(uint64_t rows);
   Room new_room(uint32_t rows);
 
-  kernel::FootprintLimits footprint_limits() const;
   /// Room for what `runs` adds to each bucket, by their counts; leaves in places_ where each of them goes on.
   void make_room(const PhotonRuns& runs);
 

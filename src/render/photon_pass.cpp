@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "render/patch_view.hpp"
 #include "render/photon_grid.hpp"
 #include "render/photon_tree.hpp"
 #include "render/sequences.hpp"
@@ -110,7 +111,7 @@ struct PhotonPass::State {
     const uint64_t at_once = std::max<uint64_t>(footprints ? room : context.launches.photons, pilot_size(room));
     const auto needed = static_cast<uint32_t>((at_once + runs.length - 1) / runs.length);
     if (runs.landings.size() == 0 || footprints)
-      runs.landings = device.allocate<float>(footprints ? 4 * room : 1, "photons in flight");
+      runs.landings = device.allocate<float>(footprints ? LANDING_ROW * room : 1, "photons in flight");
     if (needed <= most_runs) return;
     most_runs = needed;
     runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0, runs.row), "photons in flight");
@@ -209,6 +210,45 @@ struct PhotonPass::State {
     return photons;
   }
 
+  /// A pass; `maps`: into the map. Returns false if the view could not take it.
+  bool run(const PhotonPassPlan& plan, PatchView* view, bool maps, const std::function<void(double)>& progress) {
+    const bool nearest = context.features.nearest_photons;
+    if (!nearest) start_grid(plan);
+    if (view) view->start();
+    for (const kernel::LightData& light : context.data.lights) balance.not_aimed += total_power(context.data, light);
+    std::vector<cl_float8> photons;  // for the tree
+    uint64_t emitted = 0;
+    bool is_whole = true;
+    for (uint32_t p = 0; p < pairs.size(); ++p) {
+      uint64_t n = std::max<uint64_t>(1, share(pairs[p], plan.count));
+      const uint64_t n_before = plan.before == 0 ? 0 : share(pairs[p], plan.before);
+      runs.lattice = lattice_of(p, plan.pass, plan.replicate, n);
+      if (runs.lattice.columns > 0) n = uint64_t{runs.lattice.columns} << runs.lattice.log2_rows;
+      const uint64_t most_in_launch = context.features.footprints ? n : context.launches.photons;
+      for (uint64_t first = 0; first < n;) {
+        const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(most_in_launch, n - first));
+        shoot(p, plan.replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n), grid.grid(),
+              nearest ? 1 : grid.buckets(), runs.lattice);
+        for (const kernel::PhotonRunData& run : runs.reports) book(run);
+        if (view) is_whole &= view->add(runs, grid.footprint_limits());
+        if (nearest) {
+          const std::vector<cl_float8> stored = photons_of_runs();
+          photons.insert(photons.end(), stored.begin(), stored.end());
+        } else if (maps) {
+          grid.add(runs);
+        }
+        first += in_launch;
+        emitted += in_launch;
+        progress(static_cast<double>(emitted) / static_cast<double>(plan.count));
+      }
+    }
+    if (nearest)
+      fill_photon_tree(context.device, tree, photons, context.scene.photons.max_radius);
+    else if (maps)
+      grid.finish();
+    return is_whole;
+  }
+
   void book(const kernel::PhotonRunData& run) {
     auto watts = [&run](uint32_t outcome) { return to_spectrum(run.power[outcome]) + to_spectrum(run.power_rest[outcome]); };
     balance.shot += watts(OUTCOME_ALIVE);
@@ -243,42 +283,17 @@ uint64_t PhotonPass::capacity(const Device& device, const Features& features) {
   return std::min<uint64_t>(static_cast<uint64_t>(bytes / row), 1u << 28);
 }
 
-void PhotonPass::run(const PhotonPassPlan& plan, const std::function<void(double)>& progress) {
+void PhotonPass::run(const PhotonPassPlan& plan, PatchView* view, bool wants_map,
+                     const std::function<void(double)>& progress) {
   State& s = *state_;
   s.reserve(plan.count);
-  const auto [pass, replicate, before, count, share, samples] = plan;
-  const bool nearest = s.context.features.nearest_photons;
-  if (!nearest) s.start_grid(plan);
-  for (const kernel::LightData& light : s.context.data.lights)
-    s.balance.not_aimed += total_power(s.context.data, light);
-  std::vector<cl_float8> photons;  // for the tree
-  uint64_t emitted = 0;
-  for (uint32_t p = 0; p < s.pairs.size(); ++p) {
-    uint64_t n = std::max<uint64_t>(1, s.share(s.pairs[p], count));
-    const uint64_t n_before = before == 0 ? 0 : s.share(s.pairs[p], before);
-    s.runs.lattice = s.lattice_of(p, pass, replicate, n);
-    if (s.runs.lattice.columns > 0) n = uint64_t{s.runs.lattice.columns} << s.runs.lattice.log2_rows;
-    const uint64_t most_in_launch = s.context.features.footprints ? n : s.context.launches.photons;
-    for (uint64_t first = 0; first < n;) {
-      const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(most_in_launch, n - first));
-      s.shoot(p, replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n), s.grid.grid(),
-              nearest ? 1 : s.grid.buckets(), s.runs.lattice);
-      for (const kernel::PhotonRunData& run : s.runs.reports) s.book(run);
-      if (nearest) {
-        const std::vector<cl_float8> stored = s.photons_of_runs();
-        photons.insert(photons.end(), stored.begin(), stored.end());
-      } else {
-        s.grid.add(s.runs);
-      }
-      first += in_launch;
-      emitted += in_launch;
-      progress(static_cast<double>(emitted) / static_cast<double>(count));
-    }
-  }
-  if (nearest)
-    fill_photon_tree(s.context.device, s.tree, photons, s.context.scene.photons.max_radius);
-  else
-    s.grid.finish();
+  const PhotonBalance before = s.balance;
+  const bool maps = wants_map || !view || !view->is_all();
+  if (s.run(plan, view, maps, progress)) return;
+  view->give_up();
+  if (maps) return;
+  s.balance = before;
+  s.run(plan, nullptr, true, progress);
 }
 
 const PhotonMap& PhotonPass::map() const {

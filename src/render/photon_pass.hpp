@@ -75,6 +75,8 @@ struct PhotonPassPlan {
   int samples = 1;              ///< of a pixel in the picture: footprints are no smaller than what lies between them
 };
 
+class PatchView;
+
 /// Traces photons pass by pass; keeps its buffers between passes, and has room for the largest so far.
 class PhotonPass {
  public:
@@ -84,8 +86,9 @@ class PhotonPass {
   /// Photons that a single pass can hold on this device.
   static uint64_t capacity(const Device& device, const Features& features);
 
-  /// Emits the photons of a pass; passes come one after the other. Reports the fraction done.
-  void run(const PhotonPassPlan& plan, const std::function<void(double)>& progress);
+  /// Emits the photons of a pass; passes come one after the other. `view`: takes them in too, where there are footprints and
+  /// a picture is made. `wants_map`: if not, and the view shows all that is lit, no map is made. Reports the fraction done.
+  void run(const PhotonPassPlan& plan, PatchView* view, bool wants_map, const std::function<void(double)>& progress);
 
   /// What the last run left. Valid until the next.
   const PhotonMap& map() const;

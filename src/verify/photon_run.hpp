@@ -26,7 +26,7 @@ class PhotonRun {
   void run(uint64_t pass, uint32_t replicate, uint64_t before, uint64_t count) {
     pass_.run({pass, replicate, before, count, static_cast<double>(count) / static_cast<double>(scene_.photons.count),
                scene_.render.samples},
-              [](double) {});
+              nullptr, true, [](double) {});
   }
   const PhotonMap& map() const { return pass_.map(); }
 

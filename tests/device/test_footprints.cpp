@@ -56,7 +56,7 @@ class FootprintKernel {
     std::vector<float> arrived, in(8 * points);
     for (uint32_t i = 0; i < points; ++i) {
       const glm::vec3 place = in_space(landings[i].place, landings[i].height), n = normal;
-      arrived.insert(arrived.end(), {place.x, place.y, place.z, std::bit_cast<float>(landings[i].way)});
+      arrived.insert(arrived.end(), {place.x, place.y, place.z, std::bit_cast<float>(landings[i].way), 0, 0, 0, 0});
       const auto point = std::bit_cast<float>(on_lattice ? i : NO_POINT);
       const float fields[] = {point, spacing, place.x, place.y, place.z, n.x, n.y, n.z};
       for (size_t field = 0; field < 8; ++field) in[field * points + i] = fields[field];

@@ -1,0 +1,100 @@
+#include "render/patch_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/photon_pass.hpp"
+
+namespace vitrum {
+namespace {
+
+constexpr uint32_t photons_at_once = 1u << 17;  // their rows take 27 MB
+constexpr uint32_t tile_size = 32;              // a multiple of every WIDTH
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Are both the same plane, seen from the same side? As a patch's plane is compared with a pixel's.
+bool is_same_plane(const float* a, const float* b) {
+  const float along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return along > 0.9999f && std::abs(a[VIEW_OFFSET] - b[VIEW_OFFSET]) <= std::min(a[VIEW_TOLERANCE], b[VIEW_TOLERANCE]);
+}
+
+}  // namespace
+
+PatchView::PatchView(const KernelContext& context) : context_(context) {
+  Device& device = context.device;
+  const auto width = static_cast<uint32_t>(context.scene.film.width), height = static_cast<uint32_t>(context.scene.film.height);
+  pitch_ = (width + tile_size - 1) / tile_size * tile_size;
+  stride_ = padded(uint64_t{pitch_} * height);
+
+  const uint32_t corners = (width + 1) * (height + 1), corner_stride = padded(corners);
+  const Buffer<float> at_corners = device.allocate<float>(size_t{VIEW_FIELDS} * corner_stride, "caustic seen directly");
+  cl::Kernel look = context.kernels.get("look_at_corners");
+  const unsigned next = context.device_scene.set_arguments(look);
+  set_arguments(look, next, context.device_scene.camera, context.data.eye_media, corner_stride, at_corners);
+  device.launch("patches", look, context.packets(corners));
+  const std::vector<float> fields = device.read(at_corners, 0, at_corners.size());
+  const auto plane_at = [&](uint32_t column, uint32_t row) {
+    std::array<float, VIEW_FIELDS> plane;
+    for (size_t field = 0; field < VIEW_FIELDS; ++field) plane[field] = fields[field * corner_stride + row * (width + 1) + column];
+    return plane;
+  };
+  // A pixel shows one plane if its own corners and its neighbours' do, so that what ends just beside it is none of it.
+  std::vector<float> planes(size_t{VIEW_FIELDS} * stride_, 0.0f);
+  std::fill_n(planes.begin(), stride_, nan);
+  is_all_ = true;
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      const auto plane = plane_at(x, y);
+      bool is_one = true;
+      for (uint32_t row = std::max(y, 1u) - 1; row <= std::min(y + 2, height) && is_one; ++row)
+        for (uint32_t column = std::max(x, 1u) - 1; column <= std::min(x + 2, width) && is_one; ++column)
+          is_one = is_same_plane(plane.data(), plane_at(column, row).data());
+      is_all_ &= is_one;
+      if (!is_one) continue;
+      for (size_t field = 0; field < VIEW_FIELDS; ++field) planes[field * stride_ + y * pitch_ + x] = plane[field];
+    }
+  planes_ = device.upload(planes, "caustic seen directly");
+  irradiance_ = device.allocate<float>(size_t{3} * stride_, "caustic seen directly");
+  device.fill_zero(irradiance_);
+}
+
+void PatchView::start() { context_.device.fill_zero(irradiance_); }
+
+bool PatchView::add(const PhotonRuns& runs, const kernel::FootprintLimits& limits) {
+  Device& device = context_.device;
+  const auto all_runs = static_cast<uint32_t>(runs.reports.size()), most_runs = photons_at_once / runs.length;
+  const uint32_t at_once = std::min(all_runs, most_runs);
+  if (reports_.size() < at_once) {
+    rows_ = device.allocate<float>(size_t{PATCH_FIELDS} * kernel::patches_stride(runs.length) * at_once, "caustic seen directly");
+    boxes_ = device.allocate<float>(size_t{4} * kernel::patch_boxes(runs.length) * at_once, "caustic seen directly");
+    reports_ = device.allocate<kernel::PatchRunData>(at_once, "caustic seen directly");
+  }
+  const FilmSettings& film = context_.scene.film;
+  const size_t tiles = size_t{pitch_ / tile_size} * ((static_cast<uint32_t>(film.height) + tile_size - 1) / tile_size);
+  cl::Kernel project = context_.kernels.get("project_patches"), draw = context_.kernels.get("draw_patches");
+  bool reaches_behind = false;
+  for (uint32_t first = 0; first < all_runs; first += at_once) {
+    const uint32_t n_runs = std::min(at_once, all_runs - first);
+    set_arguments(project, 0, context_.device_scene.camera, first, n_runs, runs.length, runs.lattice, limits, runs.photons,
+                  runs.landings, runs.on_device, rows_, boxes_, reports_);
+    device.launch_singly("patches", project, n_runs);
+    set_arguments(draw, 0, context_.device_scene.camera, n_runs, runs.length, tile_size, rows_, boxes_, reports_, pitch_, stride_,
+                  planes_, irradiance_);
+    device.launch_singly("patches", draw, tiles);
+    for (const kernel::PatchRunData& run : device.read(reports_, 0, n_runs)) reaches_behind |= run.behind != 0;
+  }
+  return !reaches_behind;
+}
+
+void PatchView::give_up() {
+  context_.device.write(planes_, std::vector<float>(planes_.size(), nan));
+  is_all_ = false;
+}
+
+unsigned PatchView::set_arguments_of(cl::Kernel& kernel, unsigned first) const {
+  set_arguments(kernel, first, pitch_, stride_, planes_, irradiance_);
+  return first + 4;
+}
+
+}  // namespace vitrum
