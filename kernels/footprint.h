@@ -25,6 +25,31 @@ FUNCTION void lattice_point(const LatticeData lattice, const Uint point, Float u
   u[1] = smaller(turns < 0.0f ? turns + 1.0f : turns, below_1);
 }
 
+// Where a point is on its lattice, which may be one of branches.
+typedef struct {
+  Uint column, row;            // whole steps
+  Uint to_column;              // from a point to that of the next column
+  Mask first_column, last_column, first_row, last_row;
+} LatticePlace;
+
+FUNCTION LatticePlace place_on_lattice(const LatticeData lattice, const Uint point) {
+  const uint all = lattice_points(lattice);
+  const uint branches = branch_points(lattice);
+  const Mask is_branch = point >= all;
+  const Uint base = is_branch ? (point >= all + branches ? (Uint)(all + branches) : (Uint)all) : (Uint)0;
+  const Uint log2_rows = is_branch ? (Uint)(lattice.log2_rows - BRANCH_LOG2) : (Uint)lattice.log2_rows;
+  const Uint columns = is_branch ? (Uint)branch_columns(lattice) : (Uint)lattice.columns;
+  LatticePlace p;
+  p.to_column = (Uint)1 << log2_rows;
+  p.column = (point - base) >> log2_rows;
+  p.row = (point - base) & (p.to_column - 1u);
+  p.first_column = p.column == 0u;
+  p.last_column = p.column + 1u >= columns;
+  p.first_row = p.row == 0u;
+  p.last_row = p.row + 1u >= p.to_column;
+  return p;
+}
+
 // The parallelogram's sides, and into how many parts each is cut.
 typedef struct {
   Vec3 side_u, side_v;         // [m], in the receiver's plane
@@ -64,9 +89,6 @@ FUNCTION Vec3 difference(__global const float* landings, const Vec3 place, const
 // over a square.
 FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float* landings, const FootprintLimits limits,
                                 const Uint point, const Float spacing, const Vec3 place, const Vec3 normal) {
-  const Uint row_mask = (1u << lattice.log2_rows) - 1u;
-  const Uint column = point >> lattice.log2_rows;
-  const Uint row = point & row_mask;
   Mask found = lattice.columns > 0 ? point != NO_POINT : (Mask)0;
   const Mask on_lattice = found;
   Mask at_edge = 0;            // of those that went its way
@@ -75,10 +97,11 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   Vec3 v = u;
   if (ANY(on_lattice)) {
     const Uint way = AS_UINT(GATHER(Float, landings, LANDING_ROW * own + LANDING_WAY));
-    u = difference(landings, place, way, own + (1u << lattice.log2_rows), on_lattice & (column + 1u < lattice.columns),
-                   own - (1u << lattice.log2_rows), on_lattice & (column > 0u), &found, &at_edge);
-    v = difference(landings, place, way, own + 1u, on_lattice & (row < row_mask), own - 1u, on_lattice & (row > 0u), &found,
-                   &at_edge);
+    const LatticePlace at = place_on_lattice(lattice, own);
+    u = difference(landings, place, way, own + at.to_column, on_lattice & (at.last_column == 0), own - at.to_column,
+                   on_lattice & (at.first_column == 0), &found, &at_edge);
+    v = difference(landings, place, way, own + 1u, on_lattice & (at.last_row == 0), own - 1u,
+                   on_lattice & (at.first_row == 0), &found, &at_edge);
   }
 
   // The sides as a matrix (a b; c d) in the receiver's plane, its columns u and v.

@@ -18,8 +18,9 @@
 #define PATCH_FIELDS 17
 #define PATCH_TENT -1.0f       // PATCH_SCALE + 1 of a photon by itself, which is spread over a tent
 
-// A photon may leave a patch and what of it is torn off, one that branched off it is a tent.
-FUNCTION uint patches_stride(uint run_length) { return 3u * run_length + 16u; }
+// A photon on a lattice may leave a patch and what of it is torn off, another is a tent: of four neighbours in a column, three
+// may leave 3 rows, and the one that branches by the lattice 9.
+FUNCTION uint patches_stride(uint run_length) { return 5u * run_length + 16u; }
 #define PATCH_BLOCK 32u        // rows that have a box in common: {low x, low y, high x, high y}; a multiple of every WIDTH
 FUNCTION uint patch_boxes(uint run_length) { return (patches_stride(run_length) + PATCH_BLOCK - 1u) / PATCH_BLOCK; }
 

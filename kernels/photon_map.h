@@ -75,9 +75,10 @@ typedef struct {
   uint stride;                 // of the sorted photons' fields
 } BucketData;
 
-// A run may store two photons for each that it shoots, since one may branch off. And there is room for a packet beyond, so
-// that packets may be written whole.
-FUNCTION uint photons_stride(uint run_length) { return 2u * run_length + 16u; }
+// A run may store two photons for each that it shoots, since one may branch off; on a lattice, where up to five do at one in
+// sixteen, but at every fourth of a column, it is three. And there is room for a packet beyond, so that packets may be
+// written whole.
+FUNCTION uint photons_stride(uint run_length) { return 3u * run_length + 16u; }
 // `row`: PHOTON_ROW, or FOOTPRINT_ROW where there are footprints.
 FUNCTION ulong photon_in_run(uint run_length, uint run, uint field, uint row) {
   return ((ulong)run * row + field) * photons_stride(run_length);
@@ -87,9 +88,19 @@ FUNCTION ulong photon_in_run(uint run_length, uint run, uint field, uint row) {
 // column by column; the number of rows is a power of two.
 typedef struct {
   uint columns;                // 0: there is no lattice
-  uint log2_rows;
+  uint log2_rows;              // at least BRANCH_LOG2
   float shift_u, shift_v;      // in [0, 1)
 } LatticeData;
+
+// Of every fourth row and column, two lattices of what branches off the photons there, numbered in the same way one after the
+// other behind the whole lattice.
+#define BRANCH_LOG2 2u
+#define BRANCH_STEP 4.0f
+FUNCTION uint lattice_points(LatticeData lattice) { return lattice.columns << lattice.log2_rows; }
+FUNCTION uint branch_columns(LatticeData lattice) { return (lattice.columns + (1u << BRANCH_LOG2) - 1u) >> BRANCH_LOG2; }
+FUNCTION uint branch_points(LatticeData lattice) {
+  return lattice.columns == 0u ? 0u : branch_columns(lattice) << (lattice.log2_rows - BRANCH_LOG2);
+}
 
 // How large footprints may be.
 typedef struct {

@@ -12,18 +12,23 @@ typedef struct {
   Vec3 power;                  // [W]
   Float t_min;
   Uint stack, from, path;
-  Uint history;                // surfaces met; HAS_BRANCHED: a photon has branched off this one, or this one off another
+  Uint history;                // surfaces met, and what has branched off
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
-  Uint point;                  // of the lattice of emission; NO_POINT: none
+  Uint point;                  // of the lattice of emission, or of those of branches; NO_POINT: none
+  Uint branch_point;           // of the first lattice of branches; NO_POINT: what branches off here is left to others
   Uint way;                    // hash of what it met and did there: photons of one way are neighbours all along
   Float spacing;               // 1 / sqrt(probability) of its way where that was left to chance
 #endif
   Mask alive;
 } Photons;
 
+// In `history`: by chance a photon has branched off this one, or this one off another; and how often one has branched off by
+// the lattice, or that this one did.
 #define HAS_BRANCHED 0x80000000u
+#define BRANCH_SHIFT 29u
+#define IS_BRANCH 3u
 
-FUNCTION Uint surfaces_met(const Photons* photons) { return photons->history & ~HAS_BRANCHED; }
+FUNCTION Uint surfaces_met(const Photons* photons) { return photons->history & ((1u << BRANCH_SHIFT) - 1u); }
 
 // A sum of powers with what its roundings lost (Kahan), in each lane.
 typedef struct {
@@ -50,9 +55,12 @@ FUNCTION void add_power(Tally* tally, const Mask which, const Vec3 power) {
 // chance, as often as its share says, a photon with all of the power. So what most of the light does is not left to
 // chance, which would make holes in the caustic. Those that branch off are in `branched`, and `split_off` is the power
 // that this gave less what it took: 0 on average. Once a photon has branched, and where `branches` is 0, it takes all of
-// its power along and itself goes the lesser way by that chance: so from each photon come two at most.
+// its power along and itself goes the lesser way by that chance.
+//
+// On a lattice of emission nothing is left to chance the first two times: every few photons along both axes, one with the
+// power of all of them goes the lesser way. Those are a lattice of `branch_points` again, of neighbours that go one way.
 FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const uint max_depth, const int branches,
-                       Photons* photons, Photons* branched, Tally* absorbed, Tally* split_off) {
+                       const uint branch_points, Photons* photons, Photons* branched, Tally* absorbed, Tally* split_off) {
   const Mask alive = photons->alive;
   const Vec3 direction = photons->direction;
   const Uint stack = photons->stack;
@@ -64,6 +72,9 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   Uint outcome = OUTCOME_LOST;
   Vec3 next = direction;
   branched->alive = 0;
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  branched->point = NO_POINT;
+#endif
   branched->direction = direction;
   branched->stack = stack;
 #ifdef CLEAR_DEAD_LANES
@@ -98,11 +109,24 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
       Float u = unit_float(photons->path);
       if (ANY(e.here & (first_two == 0)))
         u = first_two ? u : unit_float(hash_pair(photons->path, depth));
+      const Mask may_branch = branches ? e.here & (is_last == 0) : (Mask)0;
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+      const Uint times = photons->history >> BRANCH_SHIFT & 3u;
+      const Mask by_lattice = may_branch & (photons->point != NO_POINT) & (times < 2u);
+      // Refracted as long as that is possible, so that neighbours part only where there is no light.
+      const Mask mostly_reflects = by_lattice ? split.T <= 0.0f : split.R > split.T;
+      const Float lesser = mostly_reflects ? split.T : split.R;
+      const Mask leaves_lattice = by_lattice & (photons->branch_point != NO_POINT) & (lesser > 0.0f);
+#else
+      const Mask by_lattice = 0;
+      const Mask leaves_lattice = 0;
       const Mask mostly_reflects = split.R > split.T;
       const Float lesser = mostly_reflects ? split.T : split.R;
-      const Mask drawn = u < lesser;
-      const Mask splits = branches ? e.here & ((photons->history & HAS_BRANCHED) == 0) & (is_last == 0) : (Mask)0;
-      const Mask leaves = splits & drawn;
+#endif
+      const Mask drawn = (u < lesser) & (by_lattice == 0);
+      const Mask splits = by_lattice | (may_branch & ((photons->history & HAS_BRANCHED) == 0));
+      const Mask leaves = (splits & drawn) | leaves_lattice;
+      const Float gathered = leaves_lattice ? BRANCH_STEP * BRANCH_STEP * lesser : (Float)1.0f;
       const Mask reflect = mostly_reflects != ((drawn & (splits == 0)) != 0);
       next = select3(e.here, split_chosen(&split, reflect, direction), next);
       front = (e.here & (reflect == 0)) ? entering == 0 : front;
@@ -110,26 +134,29 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
           e.here ? (reflect ? (Uint)split.stack_reflected : (Uint)split.stack_refracted) : photons->stack;
       if (ANY(leaves)) {
         branched->alive |= leaves;
-        branched->power = select3(leaves, photons->power, branched->power);
+        branched->power = select3(leaves, scale3(gathered, photons->power), branched->power);
         branched->direction = select3(leaves, split_chosen(&split, mostly_reflects == 0, direction), branched->direction);
         front_branched = (leaves & mostly_reflects) ? entering == 0 : front_branched;
         branched->stack = leaves ? (mostly_reflects ? (Uint)split.stack_refracted : (Uint)split.stack_reflected)
                                  : branched->stack;
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
-        branched->spacing = leaves ? photons->spacing / sqrt(lesser) : branched->spacing;
+        branched->spacing = leaves ? photons->spacing * (leaves_lattice ? (Float)BRANCH_STEP : 1.0f / sqrt(lesser))
+                                   : branched->spacing;
+        branched->point = leaves_lattice ? photons->branch_point + times * branch_points : branched->point;
 #endif
         branched->path = leaves ? hash_pair(photons->path, depth | HAS_BRANCHED) : branched->path;
-        photons->history |= leaves ? HAS_BRANCHED : (Uint)0;
+        photons->history |= (leaves & (leaves_lattice == 0)) ? HAS_BRANCHED : (Uint)0;
       }
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
       photons->spacing = (e.here & drawn & (splits == 0)) ? photons->spacing / sqrt(lesser) : photons->spacing;
+      photons->history += (by_lattice & (lesser > 0.0f)) ? (Uint)(1u << BRANCH_SHIFT) : (Uint)0;
 #endif
-      add_power(split_off, splits, scale3((drawn ? (Float)1.0f : (Float)0.0f) - lesser, photons->power));
+      add_power(split_off, splits, scale3((leaves ? gathered : (Float)0.0f) - lesser, photons->power));
       photons->power = select3(splits, scale3(1.0f - lesser, photons->power), photons->power);
       const Float rest = (drawn ? u : u - lesser) / (drawn ? lesser : 1.0f - lesser);
       // The low bits, which no choice has used, serve for the hash.
       const Uint rest_bits = AS_UINT(TO_INT(smaller(rest, 0.99999994f) * 16777216.0f)) << 8 | (photons->path & 0xffu);
-      photons->path = (e.here & first_two) ? rest_bits : photons->path;
+      photons->path = (e.here & first_two & (by_lattice == 0)) ? rest_bits : photons->path;
       outcome = e.here ? OUTCOME_ALIVE : outcome;
 #endif
     } else {
@@ -150,11 +177,11 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   photons->direction = next;
   photons->alive = alive & (outcome == OUTCOME_ALIVE);
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
+  branched->way = hash_pair(photons->way, surface->material << 1 | ((front_branched == entering) ? (Uint)1 : (Uint)0));
   photons->way = hash_pair(photons->way, surface->material << 1 | ((front == entering) ? (Uint)1 : (Uint)0));
-  branched->point = NO_POINT;
-  branched->way = 0;
+  branched->branch_point = NO_POINT;
 #endif
-  branched->history = photons->history;
+  branched->history = photons->history | IS_BRANCH << BRANCH_SHIFT;
   branched->origin = photons->origin;
   branched->t_min = photons->t_min;
   branched->from = leaving(surface, front_branched);

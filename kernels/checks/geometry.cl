@@ -116,7 +116,7 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
       note_wrong(result, &start, wrong);
       result->events += lanes_set(photons.alive);
       photons.alive &= wrong == 0;
-      interact(scene, &surface, max_depth, 0, &photons, &branched, &absorbed, &split_off);
+      interact(scene, &surface, max_depth, 0, 0, &photons, &branched, &absorbed, &split_off);
     }
     result->rays += WIDTH;
   }

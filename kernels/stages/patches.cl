@@ -92,8 +92,6 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
                  __global PatchRunData* restrict report) {
   const uint from_stride = photons_stride(run_length);
   const uint stride = patches_stride(run_length);
-  const Uint row_mask = (1u << lattice.log2_rows) - 1u;
-  const Uint column_step = (Uint)(1u << lattice.log2_rows);
   uint count = 0;
   Mask behind = 0;
   for (uint first = 0; first < stored; first += WIDTH) {
@@ -119,13 +117,12 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
     Float torn_power = 1.0f;
     if (ANY(on_lattice)) {
       const Uint own = on_lattice ? point : (Uint)0;
-      const Uint column = own >> lattice.log2_rows;
-      const Uint row = own & row_mask;
+      const LatticePlace lies = place_on_lattice(lattice, own);
       const Uint way = AS_UINT(GATHER(Float, landings, LANDING_ROW * own + LANDING_WAY));
       // u: ahead and behind, v: ahead and behind.
-      const Mask is_there[4] = {on_lattice & (column + 1u < lattice.columns), on_lattice & (column > 0u),
-                                on_lattice & (row < row_mask), on_lattice & (row > 0u)};
-      const Uint at[4] = {own + column_step, own - column_step, own + 1u, own - 1u};
+      const Mask is_there[4] = {on_lattice & (lies.last_column == 0), on_lattice & (lies.first_column == 0),
+                                on_lattice & (lies.last_row == 0), on_lattice & (lies.first_row == 0)};
+      const Uint at[4] = {own + lies.to_column, own - lies.to_column, own + 1u, own - 1u};
       Neighbour side[4];
       for (uint k = 0; k < 4; ++k) side[k] = neighbour_at(landings, at[k], is_there[k], way, place, normal);
       // Quadrants: bit 0: behind along u, bit 1: behind along v. Their patches are whole or torn.
@@ -312,6 +309,47 @@ FUNCTION Float share_left_of(const float a, const float b, const float inverse, 
   return fma(1.0f - beyond - before, middle, beyond);
 }
 
+// The share of a triangle's area up to fraction t of its longest side, its corner at fraction `middle` of it.
+FUNCTION float share_below(const float t, const float middle) {
+  return t < middle ? t * t / middle : 1.0f - (1.0f - t) * (1.0f - t) / (1.0f - middle);
+}
+
+// Adds `power` along a triangle that is thinner than areas of pixels can tell, pixel by pixel (Amanatides and Woo, A Fast
+// Voxel Traversal Algorithm for Ray Tracing, 1987).
+FUNCTION void draw_line(const Tile tile, const float4 plane, const float3 power, const float2 a, const float2 b,
+                        const float2 c) {
+  const float2 ab = b - a;
+  const float2 bc = c - b;
+  const float2 ca = a - c;
+  const float ab2 = ab.x * ab.x + ab.y * ab.y;
+  const float bc2 = bc.x * bc.x + bc.y * bc.y;
+  const float ca2 = ca.x * ca.x + ca.y * ca.y;
+  const float longest2 = max(ab2, max(bc2, ca2));
+  const float2 from = ab2 == longest2 ? a : bc2 == longest2 ? b : c;
+  const float2 along = ab2 == longest2 ? ab : bc2 == longest2 ? bc : ca;
+  const float2 corner = (ab2 == longest2 ? c : bc2 == longest2 ? a : b) - from;
+  const float middle = clamp((corner.x * along.x + corner.y * along.y) / longest2, 0.0f, 1.0f);
+  float2 pixel = floor(from);
+  const float2 last = floor(from + along);
+  const float2 step = (float2)(along.x < 0.0f ? -1.0f : 1.0f, along.y < 0.0f ? -1.0f : 1.0f);
+  const float2 size = 1.0f / fmax(fabs(along), 1e-9f);
+  float2 next = (step * (pixel - from) + (float2)(along.x < 0.0f ? 0.0f : 1.0f, along.y < 0.0f ? 0.0f : 1.0f)) * size;
+  const uint borders = (uint)(fabs(last.x - pixel.x) + fabs(last.y - pixel.y));
+  float done = 0.0f;
+  for (uint border = 0; border <= borders; ++border) {
+    const float share = border < borders ? share_below(clamp(min(next.x, next.y), 0.0f, 1.0f), middle) : 1.0f;
+    add_to_pixel(tile, plane, max(share - done, 0.0f) * power, pixel + 0.5f);
+    done = max(share, done);
+    if (next.x < next.y) {
+      pixel.x += step.x;
+      next.x += size.x;
+    } else {
+      pixel.y += step.y;
+      next.y += size.y;
+    }
+  }
+}
+
 // Adds `power` by the area of triangle a, b, c that is in each pixel.
 FUNCTION void draw_triangle(const Tile tile, const float4 plane, const float3 power, const float2 a, const float2 b,
                             const float2 c) {
@@ -330,15 +368,8 @@ FUNCTION void draw_triangle(const Tile tile, const float4 plane, const float3 po
   const float twice_area = u.x * v.y - u.y * v.x;
   const float2 size = high - low;
   const float longest = max(size.x, size.y);
-  // Thinner than areas of pixels can tell: points of it.
   if (!(fabs(twice_area) > 2e-3f * longest)) {
-    const uint points = (uint)clamp(4.0f * longest, 4.0f, 4096.0f);
-    for (uint k = 0; k < points; ++k) {
-      float2 w = (float2)(((float)k + 0.5f) / (float)points, (float)k * 0.618033989f);
-      w.y -= floor(w.y);
-      if (w.x + w.y > 1.0f) w = 1.0f - w;
-      add_to_pixel(tile, plane, power / (float)points, a + w.x * (b - a) + w.y * (c - a));
-    }
+    draw_line(tile, plane, power, a, b, c);
     return;
   }
   const float3 density = (2.0f / twice_area) * power;

@@ -66,6 +66,13 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   photons.history = 0;
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
   photons.point = lattice.columns > 0 ? point : (Uint)NO_POINT;
+  photons.branch_point = NO_POINT;
+  if (lattice.columns > 0) {
+    const LatticePlace at = place_on_lattice(lattice, point);
+    const Uint odd = (at.column | at.row) & ((1u << BRANCH_LOG2) - 1u);
+    const Uint branch = ((at.column >> BRANCH_LOG2) << (lattice.log2_rows - BRANCH_LOG2)) + (at.row >> BRANCH_LOG2);
+    photons.branch_point = odd == 0 ? lattice_points(lattice) + branch : (Uint)NO_POINT;
+  }
   photons.way = 0;
   photons.spacing = 1.0f;
 #endif
@@ -75,15 +82,17 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
 
 // Photons that wait for a packet of their own: field f of the k-th at [f][k]. A packet is emitted only while fewer than
 // WIDTH wait in either queue. One that is taken puts no more back than it had, and as many that branch off, which do not
-// branch again: so less than 4 WIDTH wait in both.
+// branch again: so less than 4 WIDTH wait in both. On a lattice six may come of one in four, of others two: less than 15 WIDTH.
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
-#define WAITING_FIELDS 17
+#define WAITING_FIELDS 18
+#define WAITING_ROOM (16 * WIDTH)
 #else
 #define WAITING_FIELDS 14
+#define WAITING_ROOM (6 * WIDTH)
 #endif
 
 typedef struct {
-  float fields[WAITING_FIELDS][6 * WIDTH];
+  float fields[WAITING_FIELDS][WAITING_ROOM];
   uint count;
 } Waiting;
 
@@ -108,6 +117,7 @@ FUNCTION void wait_in(Waiting* waiting, const Photons* photons, const Mask which
     waiting->fields[14][k] = as_float(LANE(photons->point, uint, lane));
     waiting->fields[15][k] = as_float(LANE(photons->way, uint, lane));
     waiting->fields[16][k] = LANE(photons->spacing, float, lane);
+    waiting->fields[17][k] = as_float(LANE(photons->branch_point, uint, lane));
 #endif
   }
 }
@@ -132,6 +142,7 @@ FUNCTION Photons take_waiting(Waiting* waiting) {
   photons.point = AS_UINT(LOAD(waiting->fields[14], k));
   photons.way = AS_UINT(LOAD(waiting->fields[15], k));
   photons.spacing = LOAD(waiting->fields[16], k);
+  photons.branch_point = AS_UINT(LOAD(waiting->fields[17], k));
 #endif
   photons.alive = lanes_below(0, taken);
   return photons;
@@ -211,12 +222,13 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   Vec3 high = negate3(low);
   // Those outside of all media and those inside wait apart, since they meet different surfaces.
   Waiting waiting[2];
+  const uint n_branch_points = branch_points(lattice);
   waiting[0].count = waiting[1].count = 0;
 #ifdef CLEAR_DEAD_LANES
   // A packet that is not full takes its dead lanes from behind those that wait.
   for (uint queue = 0; queue < 2; ++queue)
     for (uint field = 0; field < WAITING_FIELDS; ++field)
-      for (uint k = 0; k < 6 * WIDTH; ++k) waiting[queue].fields[field][k] = 0.0f;
+      for (uint k = 0; k < WAITING_ROOM; ++k) waiting[queue].fields[field][k] = 0.0f;
 #endif
   Aim aim;
   int aimed = 0;
@@ -234,6 +246,11 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
       FOR_LANES(lane, photons.alive & (photons.point != NO_POINT)) {
         landings[LANDING_ROW * LANE(photons.point, uint, lane) + LANDING_WAY] = as_float(0u);
       }
+      FOR_LANES(lane, photons.alive & (photons.branch_point != NO_POINT)) {
+        const uint branch = LANE(photons.branch_point, uint, lane);
+        landings[LANDING_ROW * branch + LANDING_WAY] = as_float(0u);
+        landings[LANDING_ROW * (branch + n_branch_points) + LANDING_WAY] = as_float(0u);
+      }
 #endif
       add_power(&power[OUTCOME_ALIVE], photons.alive, photons.power);
       next += WIDTH;
@@ -250,8 +267,8 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
       const Vec3 arrived = photons.direction;
       Photons branched;
       surfaces += lanes_set(photons.alive);
-      const Uint outcome = interact(scene, &surface, max_depth, 1, &photons, &branched, &power[OUTCOME_ABSORBED],
-                                    &power[TALLY_SPLIT]);
+      const Uint outcome = interact(scene, &surface, max_depth, 1, n_branch_points, &photons, &branched,
+                                    &power[OUTCOME_ABSORBED], &power[TALLY_SPLIT]);
       if (ANY(branched.alive)) {
         n_branched += lanes_set(branched.alive);
         wait_in(&waiting[0], &branched, branched.alive & (branched.stack == 0));

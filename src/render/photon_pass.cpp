@@ -111,7 +111,7 @@ struct PhotonPass::State {
     const uint64_t at_once = std::max<uint64_t>(footprints ? room : context.launches.photons, pilot_size(room));
     const auto needed = static_cast<uint32_t>((at_once + runs.length - 1) / runs.length);
     if (runs.landings.size() == 0 || footprints)
-      runs.landings = device.allocate<float>(footprints ? LANDING_ROW * room : 1, "photons in flight");
+      runs.landings = device.allocate<float>(footprints ? LANDING_ROW * (room + room / 2) : 1, "photons in flight");
     if (needed <= most_runs) return;
     most_runs = needed;
     runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0, runs.row), "photons in flight");
