@@ -4,7 +4,7 @@
 // Interaction Using Backward Beam Tracing, 1990. Nothing is blurred by it, so that its error falls faster than that of
 // kernels about each photon (footprint.h), which are for what is not seen directly.
 //
-// Rows of patches, by runs of photons, field f of row i of a run at [f * stride + i].
+// Rows of patches, by runs of photons, field f of row i of a run at [PATCH_ROW * i + f].
 #ifndef VITRUM_PATCH_H
 #define VITRUM_PATCH_H
 
@@ -16,12 +16,13 @@
 #define PATCH_NORMAL 13        // 3 floats: of the receiver, to the side that is lit
 #define PATCH_OFFSET 16        // the receiver's plane along it [m]
 #define PATCH_FIELDS 17
+#define PATCH_ROW 20u
 #define PATCH_TENT -1.0f       // PATCH_SCALE + 1 of a photon by itself, which is spread over a tent
 
 // A photon on a lattice may leave a patch and what of it is torn off, another is a tent: of four neighbours in a column, three
 // may leave 3 rows, and the one that branches by the lattice 9.
 FUNCTION uint patches_stride(uint run_length) { return 5u * run_length + 16u; }
-#define PATCH_BLOCK 32u        // rows that have a box in common: {low x, low y, high x, high y}; a multiple of every WIDTH
+#define PATCH_BLOCK 16u        // rows that have a box in common: {low x, low y, high x, high y}
 FUNCTION uint patch_boxes(uint run_length) { return (patches_stride(run_length) + PATCH_BLOCK - 1u) / PATCH_BLOCK; }
 
 typedef struct {

@@ -58,11 +58,10 @@ FUNCTION Neighbour neighbour_at(__global const float* landings, const Uint point
 }
 
 // Writes the lanes of `which` as further rows.
-FUNCTION void put_rows(const Mask which, const Float* values, const uint stride, __global float* rows, uint* count) {
+FUNCTION void put_rows(const Mask which, const Float* values, __global float* rows, uint* count) {
   FOR_LANES(lane, which) {
-    for (uint field = 0; field < PATCH_FIELDS; ++field)
-      rows[field * stride + *count] = LANE(values[field], float, lane);
-    ++*count;
+    __global float* row = rows + PATCH_ROW * (*count)++;
+    for (uint field = 0; field < PATCH_FIELDS; ++field) row[field] = LANE(values[field], float, lane);
   }
 }
 
@@ -91,7 +90,6 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
                  const FootprintLimits limits, __global float* restrict rows, __global float* restrict boxes,
                  __global PatchRunData* restrict report) {
   const uint from_stride = photons_stride(run_length);
-  const uint stride = patches_stride(run_length);
   uint count = 0;
   Mask behind = 0;
   for (uint first = 0; first < stored; first += WIDTH) {
@@ -146,7 +144,7 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
       values[PATCH_POWER + 0] = 0.25f * sum.x;
       values[PATCH_POWER + 1] = 0.25f * sum.y;
       values[PATCH_POWER + 2] = 0.25f * sum.z;
-      put_rows(shown, values, stride, rows, &count);
+      put_rows(shown, values, rows, &count);
 
       // What is torn off goes on as its photon's neighbours on the other side tell.
       const Mask has_sides = (side[0].joined | side[1].joined) & (side[2].joined | side[3].joined);
@@ -180,7 +178,7 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
         values[PATCH_POWER + 0] = torn_power * power.x;
         values[PATCH_POWER + 1] = torn_power * power.y;
         values[PATCH_POWER + 2] = torn_power * power.z;
-        put_rows(shown, values, stride, rows, &count);
+        put_rows(shown, values, rows, &count);
       }
     }
 
@@ -212,24 +210,20 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
       values[PATCH_POWER + 2] = power.z;
       const Mask near_view = (seen.x + wide > 0.0f) & (seen.x - wide < (float)camera->width) & (seen.y + high > 0.0f) &
                              (seen.y - high < (float)camera->height);
-      put_rows(alone & seen.clear & near_view, values, stride, rows, &count);
+      put_rows(alone & seen.clear & near_view, values, rows, &count);
     }
   }
 
   for (uint first = 0; first < count; first += PATCH_BLOCK) {
     float4 box = (float4)(INFINITY, INFINITY, -INFINITY, -INFINITY);
     for (uint i = first; i < min(first + PATCH_BLOCK, count); ++i) {
-      __global const float* row = rows + i;
-      const float2 corner = (float2)(row[0], row[stride]);
-      if (row[(PATCH_SCALE + 1) * stride] == PATCH_TENT) {
-        const float2 half_width = (float2)(row[2 * stride], row[3 * stride]);
-        box = (float4)(fmin(box.lo, corner - half_width), fmax(box.hi, corner + half_width));
-        continue;
-      }
-      for (uint k = 0; k < 4; ++k) {
-        const float2 other = (float2)(row[2 * k * stride], row[(2 * k + 1) * stride]);
-        box = (float4)(fmin(box.lo, other), fmax(box.hi, other));
-      }
+      __global const float* row = rows + PATCH_ROW * i;
+      const float8 corners = vload8(0, row + PATCH_CORNER);
+      const float4 own = row[PATCH_SCALE + 1] == PATCH_TENT
+                             ? (float4)(corners.s01 - corners.s23, corners.s01 + corners.s23)
+                             : (float4)(fmin(fmin(corners.s01, corners.s23), fmin(corners.s45, corners.s67)),
+                                        fmax(fmax(corners.s01, corners.s23), fmax(corners.s45, corners.s67)));
+      box = (float4)(fmin(box.lo, own.lo), fmax(box.hi, own.hi));
     }
     vstore4(box, first / PATCH_BLOCK, boxes);
   }
@@ -248,65 +242,69 @@ KERNEL void project_patches(__global const CameraData* camera, const uint first_
   const uint run = first_run + i;
   project_run(camera, runs[run].photons[OUTCOME_STORED], run_length,
               photons + photon_in_run(run_length, run, 0, FOOTPRINT_ROW), landings, lattice, limits,
-              rows + (ulong)i * PATCH_FIELDS * patches_stride(run_length), boxes + 4u * i * patch_boxes(run_length),
+              rows + (ulong)i * PATCH_ROW * patches_stride(run_length), boxes + 4u * i * patch_boxes(run_length),
               &reports[i]);
 }
 
-// What patches are drawn to: a tile of the picture. Its sides, and the picture's rows, hold whole packets.
+// What patches are drawn to: a tile of the picture, in packets of PIXELS. Its sides, and the picture's rows, hold whole ones.
+#define PIXELS 4
 typedef struct {
   int left, top, right, bottom;        // [pixels], the last two outside
   uint pitch;                          // of rows
   uint stride;                         // of planes
+  int is_one;                          // all pixels show the plane of the first
   __global const float* planes;        // by pixel, VIEW_...
   __global float* irradiance;          // 3 planes [W/m2]
 } Tile;
 
-// Adds `power` times `shares` to the packet of pixels from (x, y) on, where they show the patch's plane.
-FUNCTION void add_to_pixels(const Tile tile, const float4 plane, const float3 power, const Float shares, const int x,
+// Do pixels from `i` on show a plane?
+FUNCTION int4 show_plane(const Tile tile, const float4 plane, const uint i) {
+  __global const float* shown = tile.planes + i;
+  const float4 along = vload4(0, shown + VIEW_NORMAL * tile.stride) * plane.x +
+                       vload4(0, shown + (VIEW_NORMAL + 1) * tile.stride) * plane.y +
+                       vload4(0, shown + (VIEW_NORMAL + 2) * tile.stride) * plane.z;
+  const float4 off = fabs(vload4(0, shown + VIEW_OFFSET * tile.stride) - plane.w);
+  return (along > 0.9999f) & (off <= vload4(0, shown + VIEW_TOLERANCE * tile.stride));
+}
+
+// Adds `power` times `shares` to the packet of pixels from (x, y) on.
+FUNCTION void add_to_pixels(const Tile tile, const float4 plane, const float3 power, const float4 shares, const int x,
                             const int y) {
   const uint i = (uint)y * tile.pitch + (uint)x;
-  const Vec3 normal = make_vec3(LOAD(tile.planes, VIEW_NORMAL * tile.stride + i),
-                                LOAD(tile.planes, (VIEW_NORMAL + 1) * tile.stride + i),
-                                LOAD(tile.planes, (VIEW_NORMAL + 2) * tile.stride + i));
-  const Float off = fabs(LOAD(tile.planes, VIEW_OFFSET * tile.stride + i) - plane.w);
-  const Mask shown = (normal.x * plane.x + normal.y * plane.y + normal.z * plane.z > 0.9999f) &
-                     (off <= LOAD(tile.planes, VIEW_TOLERANCE * tile.stride + i));
-  if (!ANY(shown)) return;
-  const Float share = shown ? shares : (Float)0.0f;
+  const float4 share = tile.is_one ? shares : show_plane(tile, plane, i) ? shares : (float4)(0.0f);
   __global float* to = tile.irradiance + i;
-  STORE(to, 0, LOAD(to, 0) + power.x * share);
-  STORE(to, tile.stride, LOAD(to, tile.stride) + power.y * share);
-  STORE(to, 2 * tile.stride, LOAD(to, 2 * tile.stride) + power.z * share);
+  vstore4(vload4(0, to) + power.x * share, 0, to);
+  vstore4(vload4(0, to + tile.stride) + power.y * share, 0, to + tile.stride);
+  vstore4(vload4(0, to + 2 * tile.stride) + power.z * share, 0, to + 2 * tile.stride);
 }
+
+// The first of the packet that pixel x of a tile is in.
+FUNCTION int packet_of(const Tile tile, const int x) { return tile.left + (max(x, tile.left) - tile.left) / PIXELS * PIXELS; }
 
 FUNCTION void add_to_pixel(const Tile tile, const float4 plane, const float3 power, const float2 place) {
   const int x = (int)floor(place.x);
   const int y = (int)floor(place.y);
   if (x < tile.left || x >= tile.right || y < tile.top || y >= tile.bottom) return;
   const uint i = (uint)y * tile.pitch + (uint)x;
-  __global const float* seen = tile.planes + i;
-  const float along = seen[VIEW_NORMAL * tile.stride] * plane.x + seen[(VIEW_NORMAL + 1) * tile.stride] * plane.y +
-                      seen[(VIEW_NORMAL + 2) * tile.stride] * plane.z;
-  if (!(along > 0.9999f && fabs(seen[VIEW_OFFSET * tile.stride] - plane.w) <= seen[VIEW_TOLERANCE * tile.stride])) return;
+  const int packet = packet_of(tile, x);
+  if (!tile.is_one) {
+    const int4 shows = show_plane(tile, plane, (uint)y * tile.pitch + (uint)packet);
+    if (!((const int*)&shows)[x - packet]) return;
+  }
   tile.irradiance[i] += power.x;
   tile.irradiance[tile.stride + i] += power.y;
   tile.irradiance[2 * tile.stride + i] += power.z;
 }
 
-// Of the packet that pixel x of a tile is in, the first.
-FUNCTION int packet_of(const Tile tile, const int x) { return tile.left + (max(x, tile.left) - tile.left) / WIDTH * WIDTH; }
-
-// Of pixels whose left sides are at `left`, the share that lies left of an edge, which goes from a to b, a <= b, over as
-// many rows as it does: the mean over it of clamp(x - left, 0, 1). `inverse`: of b - a.
-FUNCTION Float share_left_of(const float a, const float b, const float inverse, const Float left) {
-  const Float from = a - left;
-  const Float to = b - left;
-  const Float zero = 0.0f;
-  const Float one = 1.0f;
-  const Float beyond = smaller(larger((to - 1.0f) * inverse, zero), one);
-  const Float before = smaller(larger(-from * inverse, zero), one);
-  const Float middle = 0.5f * (smaller(larger(from, zero), one) + smaller(larger(to, zero), one));
-  return fma(1.0f - beyond - before, middle, beyond);
+// Of pixels whose left sides are at `left`, four of a row and four of the next, the share that lies left of an edge: the mean
+// over the edge's piece from a to b, a <= b, in each row of clamp(x - left, 0, 1). `inverse`: of b - a.
+FUNCTION float8 share_left_of(const float8 a, const float8 b, const float8 inverse, const float8 left) {
+  const float8 from = a - left;
+  const float8 to = b - left;
+  const float8 beyond = clamp((to - 1.0f) * inverse, 0.0f, 1.0f);
+  const float8 before = clamp(-from * inverse, 0.0f, 1.0f);
+  const float8 middle = 0.5f * (clamp(from, 0.0f, 1.0f) + clamp(to, 0.0f, 1.0f));
+  return (1.0f - beyond - before) * middle + beyond;
 }
 
 // The share of a triangle's area up to fraction t of its longest side, its corner at fraction `middle` of it.
@@ -350,71 +348,86 @@ FUNCTION void draw_line(const Tile tile, const float4 plane, const float3 power,
   }
 }
 
-// Adds `power` by the area of triangle a, b, c that is in each pixel.
-FUNCTION void draw_triangle(const Tile tile, const float4 plane, const float3 power, const float2 a, const float2 b,
-                            const float2 c) {
-  const float2 low = fmin(a, fmin(b, c));
-  const float2 high = fmax(a, fmax(b, c));
-  const float4 pixels = floor((float4)(low, high));
-  if (pixels.x == pixels.z && pixels.y == pixels.w) {
-    add_to_pixel(tile, plane, power, low);
-    return;
-  }
+FUNCTION float least_of(const float8 v) {
+  const float4 of_four = fmin(v.lo, v.hi);
+  const float2 of_two = fmin(of_four.lo, of_four.hi);
+  return min(of_two.x, of_two.y);
+}
+
+// Adds `power` times `scales` of triangles a, b, c and a, c, d by their areas in each pixel.
+FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 power, const float2 scales, const float2 a,
+                             const float2 b, const float2 c, const float2 d) {
+  const float2 low = fmin(fmin(a, b), fmin(c, d));
+  const float2 high = fmax(fmax(a, b), fmax(c, d));
   // From the tile's corner, where numbers are small.
   const float2 origin = (float2)((float)tile.left, (float)tile.top);
-  const float2 corners[4] = {a - origin, b - origin, c - origin, a - origin};
-  const float2 u = corners[1] - corners[0];
-  const float2 v = corners[2] - corners[0];
-  const float twice_area = u.x * v.y - u.y * v.x;
-  const float2 size = high - low;
-  const float longest = max(size.x, size.y);
-  if (!(fabs(twice_area) > 2e-3f * longest)) {
-    draw_line(tile, plane, power, a, b, c);
-    return;
-  }
-  const float3 density = (2.0f / twice_area) * power;
-  float slope[3];
-  for (uint k = 0; k < 3; ++k) slope[k] = (corners[k + 1].x - corners[k].x) / (corners[k + 1].y - corners[k].y);
-  const int last_row = min((int)ceil(high.y), tile.bottom);
-  for (int y = max((int)pixels.y, tile.top); y < last_row; ++y) {
-    const float above = (float)(y - tile.top);
-    const float below = above + 1.0f;
-    float left[3], right[3], inverse[3], rows[3];
-    float first = INFINITY;
-    float last = -INFINITY;
-    for (uint k = 0; k < 3; ++k) {
-      const float2 from = corners[k];
-      const float2 to = corners[k + 1];
-      const float start = clamp(from.y, above, below);
-      const float end = clamp(to.y, above, below);
-      rows[k] = end - start;
-      if (rows[k] == 0.0f) continue;
-      const float2 range = (float2)(min(from.x, to.x), max(from.x, to.x));
-      const float x_start = start == from.y ? from.x : clamp(from.x + (start - from.y) * slope[k], range.x, range.y);
-      const float x_end = end == to.y ? to.x : clamp(from.x + (end - from.y) * slope[k], range.x, range.y);
-      left[k] = min(x_start, x_end);
-      right[k] = max(x_start, x_end);
-      inverse[k] = 1.0f / max(right[k] - left[k], 1e-9f);
-      first = min(first, left[k]);
-      last = max(last, right[k]);
-    }
-    const int end = min(tile.left + (int)ceil(min(last, 1e6f)), tile.right);
-    for (int x = packet_of(tile, tile.left + (int)floor(max(first, 0.0f))); x < end; x += WIDTH) {
-      const Float left_sides = TO_FLOAT(AS_INT(LANES) + (x - tile.left));
-      Float share = 0.0f;
-      for (uint k = 0; k < 3; ++k)
-        if (rows[k] != 0.0f) share += rows[k] * share_left_of(left[k], right[k], inverse[k], left_sides);
-      add_to_pixels(tile, plane, density, share, x, y);
+  const float8 from_x = (float8)(a.x, b.x, c.x, d.x, a.x, a.x, a.x, a.x) - origin.x;
+  const float8 from_y = (float8)(a.y, b.y, c.y, d.y, a.y, a.y, a.y, a.y) - origin.y;
+  const float8 to_x = (float8)(b.x, c.x, d.x, a.x, c.x, a.x, a.x, a.x) - origin.x;
+  const float8 to_y = (float8)(b.y, c.y, d.y, a.y, c.y, a.y, a.y, a.y) - origin.y;
+  const float2 twice_area =
+      (float2)((from_x.s1 - from_x.s0) * (from_y.s2 - from_y.s0) - (from_y.s1 - from_y.s0) * (from_x.s2 - from_x.s0),
+               (from_x.s2 - from_x.s0) * (from_y.s3 - from_y.s0) - (from_y.s2 - from_y.s0) * (from_x.s3 - from_x.s0));
+  const float longest = max(high.x - low.x, high.y - low.y);
+  // Those thinner than areas of pixels can tell are lines.
+  const int2 has_area = fabs(twice_area) > 2e-3f * longest;
+  if (!has_area.x) draw_line(tile, plane, 0.5f * scales.x * power, a, b, c);
+  if (!has_area.y) draw_line(tile, plane, 0.5f * scales.y * power, a, c, d);
+  if (!any(has_area)) return;
+  const float2 densities = has_area ? scales / twice_area : (float2)(0.0f);
+  // Of the edges, the last of them both triangles'.
+  const float8 density = (float8)(densities.x, densities.x, densities.y, densities.y, densities.y - densities.x, 0.0f, 0.0f, 0.0f);
+  const float8 height = to_y - from_y;
+  const float8 slope = height == 0.0f ? (float8)(0.0f) : (to_x - from_x) / height;
+  const float2 size = (float2)((float)(tile.right - tile.left), (float)(tile.bottom - tile.top));
+  const float16 from_x2 = (float16)(from_x, from_x);
+  const float16 from_y2 = (float16)(from_y, from_y);
+  const float16 to_x2 = (float16)(to_x, to_x);
+  const float16 to_y2 = (float16)(to_y, to_y);
+  const float16 slope2 = (float16)(slope, slope);
+  const float16 low_x = fmin(from_x2, to_x2);
+  const float16 high_x = fmax(from_x2, to_x2);
+  const float16 density2 = (float16)(density, density);
+  const int end_row = (int)clamp(high.y - origin.y + 1.0f, 0.0f, size.y);
+  // Two rows at a time, the second of which may be another tile's.
+  for (int row = (int)clamp(low.y - origin.y, 0.0f, size.y); row < end_row; row += 2) {
+    const float16 above = (float)row + (float16)((float8)(0.0f), (float8)(1.0f));
+    const float16 start = clamp(from_y2, above, above + 1.0f);
+    const float16 end = clamp(to_y2, above, above + 1.0f);
+    const float16 x_start = clamp(from_x2 + (start - from_y2) * slope2, low_x, high_x);
+    const float16 x_end = end == to_y2 ? to_x2 : clamp(from_x2 + (end - from_y2) * slope2, low_x, high_x);
+    const int16 passes = start != end;
+    const float16 left = fmin(x_start, x_end);
+    const float16 right = fmax(x_start, x_end);
+    const float16 inverse = 1.0f / fmax(right - left, 1e-9f);
+    const float16 weight = density2 * (end - start);
+    const float16 firsts = passes ? left : (float16)(INFINITY);
+    const float16 lasts = passes ? -right : (float16)(INFINITY);
+    const int first = (int)clamp(least_of(fmin(firsts.lo, firsts.hi)), 0.0f, size.x) / PIXELS * PIXELS;
+    const int last = (int)clamp(1.0f - least_of(fmin(lasts.lo, lasts.hi)), 0.0f, size.x);
+    for (int column = first; column < last; column += PIXELS) {
+      const float8 left_sides = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 0.0f, 1.0f, 2.0f, 3.0f) + (float)column;
+      float8 share = 0.0f;
+#define ADD_EDGE(k, l)                                                                                                 \
+  share += (float8)((float4)(weight.k), (float4)(weight.l)) *                                                          \
+           share_left_of((float8)((float4)(left.k), (float4)(left.l)), (float8)((float4)(right.k), (float4)(right.l)), \
+                         (float8)((float4)(inverse.k), (float4)(inverse.l)), left_sides)
+      ADD_EDGE(s0, s8);
+      ADD_EDGE(s1, s9);
+      ADD_EDGE(s2, sa);
+      ADD_EDGE(s3, sb);
+      ADD_EDGE(s4, sc);
+#undef ADD_EDGE
+      add_to_pixels(tile, plane, power, share.lo, tile.left + column, tile.top + row);
+      if (row + 1 < end_row) add_to_pixels(tile, plane, power, share.hi, tile.left + column, tile.top + row + 1);
     }
   }
 }
 
 // The integral of a tent of area 1 from -1 to 1 up to t.
-FUNCTION Float tent_below(const Float t) {
-  const Float one = 1.0f;
-  const Float zero = 0.0f;
-  const Float rising = larger(smaller(1.0f + t, one), zero);
-  const Float falling = larger(smaller(t, one), zero);
+FUNCTION float4 tent_below(const float4 t) {
+  const float4 rising = clamp(1.0f + t, 0.0f, 1.0f);
+  const float4 falling = clamp(t, 0.0f, 1.0f);
   return 0.5f * rising * rising + falling * (1.0f - 0.5f * falling);
 }
 
@@ -422,60 +435,52 @@ FUNCTION void draw_tent(const Tile tile, const float4 plane, const float3 power,
                         const float2 half_width) {
   const int first_row = max((int)floor(max(middle.y - half_width.y, -1.0f)), tile.top);
   const int last_row = min((int)ceil(min(middle.y + half_width.y, 1e6f)), tile.bottom);
-  const int first_column = packet_of(tile, (int)floor(max(middle.x - half_width.x, 0.0f)));
+  const int first_column = packet_of(tile, (int)floor(clamp(middle.x - half_width.x, 0.0f, 1e6f)));
   const int last_column = min((int)ceil(min(middle.x + half_width.x, 1e6f)), tile.right);
   for (int y = first_row; y < last_row; ++y) {
-    const Float lower = ((float)(y + 1) - middle.y) / half_width.y;
-    const Float upper = ((float)y - middle.y) / half_width.y;
-    const Float in_row = tent_below(lower) - tent_below(upper);
-    for (int x = first_column; x < last_column; x += WIDTH) {
-      const Float left = (TO_FLOAT(AS_INT(LANES) + x) - middle.x) / half_width.x;
-      const Float share = in_row * (tent_below(left + 1.0f / half_width.x) - tent_below(left));
-      add_to_pixels(tile, plane, power, share, x, y);
+    const float4 borders = tent_below(((float)y + (float4)(0.0f, 1.0f, 0.0f, 0.0f) - middle.y) / half_width.y);
+    const float in_row = borders.y - borders.x;
+    for (int x = first_column; x < last_column; x += PIXELS) {
+      const float4 left = ((float4)(0.0f, 1.0f, 2.0f, 3.0f) + ((float)x - middle.x)) / half_width.x;
+      add_to_pixels(tile, plane, power, in_row * (tent_below(left + 1.0f / half_width.x) - tent_below(left)), x, y);
     }
   }
 }
 
-BODY draw_run(const Tile tile, const uint count, const uint stride, __global const float* restrict rows,
-              __global const float* restrict boxes) {
-  for (uint first = 0; first < count; first += PATCH_BLOCK) {
-    const float4 box = vload4(first / PATCH_BLOCK, boxes);
-    if (!(box.x < (float)tile.right && box.z > (float)tile.left && box.y < (float)tile.bottom && box.w > (float)tile.top))
+BODY draw_run(const Tile tile, const uint count, __global const float* restrict rows, __global const float* restrict boxes) {
+  const float4 sides = (float4)((float)tile.left, (float)tile.top, (float)tile.right, (float)tile.bottom);
+  const uint first_pixel = (uint)tile.top * tile.pitch + (uint)tile.left;
+  for (uint i = 0; i < count; ++i) {
+    if (i % PATCH_BLOCK == 0) {
+      const float4 box = vload4(i / PATCH_BLOCK, boxes);
+      if (any(box.lo >= sides.hi) || any(box.hi <= sides.lo)) {
+        i += PATCH_BLOCK - 1;
+        continue;
+      }
+    }
+    __global const float* row = rows + PATCH_ROW * i;
+    const float8 corners = vload8(0, row + PATCH_CORNER);
+    const float3 power = vload3(0, row + PATCH_POWER);
+    const float2 scales = vload2(0, row + PATCH_SCALE);
+    const float4 plane = vload4(0, row + PATCH_NORMAL);
+    if (scales.y == PATCH_TENT) {
+      if (!tile.is_one || show_plane(tile, plane, first_pixel).x)
+        draw_tent(tile, plane, scales.x * power, corners.s01, corners.s23);
       continue;
-    const uint last = min(first + PATCH_BLOCK, count);
-    for (uint i = first; i < last; ++i) {
-      __global const float* row = rows + i;
-      const float2 a = (float2)(row[0], row[stride]);
-      const float2 b = (float2)(row[2 * stride], row[3 * stride]);
-      const float2 c = (float2)(row[4 * stride], row[5 * stride]);
-      const float2 d = (float2)(row[6 * stride], row[7 * stride]);
-      const float3 power = (float3)(row[PATCH_POWER * stride], row[(PATCH_POWER + 1) * stride],
-                                    row[(PATCH_POWER + 2) * stride]);
-      const float4 plane = (float4)(row[PATCH_NORMAL * stride], row[(PATCH_NORMAL + 1) * stride],
-                                    row[(PATCH_NORMAL + 2) * stride], row[PATCH_OFFSET * stride]);
-      const float scale = row[PATCH_SCALE * stride];
-      const float other_scale = row[(PATCH_SCALE + 1) * stride];
-      if (other_scale == PATCH_TENT) {
-        draw_tent(tile, plane, scale * power, a, b);
-        continue;
-      }
-      const float2 low = fmin(fmin(a, b), fmin(c, d));
-      const float2 high = fmax(fmax(a, b), fmax(c, d));
-      if (!(low.x < (float)tile.right && high.x > (float)tile.left && low.y < (float)tile.bottom && high.y > (float)tile.top))
-        continue;
-      const float4 pixels = floor((float4)(low, high));
-      if (pixels.x == pixels.z && pixels.y == pixels.w) {
-        add_to_pixel(tile, plane, 0.5f * (scale + other_scale) * power, low);
-        continue;
-      }
-      draw_triangle(tile, plane, 0.5f * scale * power, a, b, c);
-      draw_triangle(tile, plane, 0.5f * other_scale * power, a, c, d);
     }
+    const float2 low = fmin(fmin(corners.s01, corners.s23), fmin(corners.s45, corners.s67));
+    const float2 high = fmax(fmax(corners.s01, corners.s23), fmax(corners.s45, corners.s67));
+    if (any(low >= sides.hi) || any(high <= sides.lo)) continue;
+    if (tile.is_one && !show_plane(tile, plane, first_pixel).x) continue;
+    if (all(floor(low) == floor(high)))
+      add_to_pixel(tile, plane, 0.5f * (scales.x + scales.y) * power, low);
+    else
+      draw_triangles(tile, plane, power, scales, corners.s01, corners.s23, corners.s45, corners.s67);
   }
 }
 
-// Adds n_runs runs of patches to tiles of `tile_size` pixels' side, row by row of
-// tiles. `tile_size` and `pitch` are multiples of every WIDTH.
+// Adds n_runs runs of patches to tiles of `tile_size` pixels' side, row by row of tiles. `tile_size` and `pitch` are multiples
+// of PIXELS.
 KERNEL void draw_patches(__global const CameraData* camera, const uint n_runs, const uint run_length, const uint tile_size,
                          __global const float* rows, __global const float* boxes, __global const PatchRunData* reports,
                          const uint pitch, const uint stride, __global const float* planes, __global float* irradiance) {
@@ -492,7 +497,21 @@ KERNEL void draw_patches(__global const CameraData* camera, const uint n_runs, c
   tile.stride = stride;
   tile.planes = planes;
   tile.irradiance = irradiance;
+  // One plane all over is asked once for each patch.
+  __global const float* first = planes + (uint)tile.top * pitch + (uint)tile.left;
+  const float4 plane = (float4)(first[VIEW_NORMAL * stride], first[(VIEW_NORMAL + 1) * stride],
+                                first[(VIEW_NORMAL + 2) * stride], first[VIEW_OFFSET * stride]);
+  int is_one = 1;
+  int is_any = 0;
+  for (int y = tile.top; y < tile.bottom; ++y)
+    for (int x = tile.left; x < min(tile.right, (int)camera->width); ++x) {
+      const uint pixel = (uint)y * pitch + (uint)x;
+      is_one &= show_plane(tile, plane, pixel).x != 0;
+      is_any |= planes[pixel] == planes[pixel];
+    }
+  tile.is_one = is_one;
+  if (!is_any) return;
   for (uint run = 0; run < n_runs; ++run)
-    draw_run(tile, reports[run].rows, patches_stride(run_length),
-             rows + (ulong)run * PATCH_FIELDS * patches_stride(run_length), boxes + 4u * run * patch_boxes(run_length));
+    draw_run(tile, reports[run].rows, rows + (ulong)run * PATCH_ROW * patches_stride(run_length),
+             boxes + 4u * run * patch_boxes(run_length));
 }

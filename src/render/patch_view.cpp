@@ -13,10 +13,11 @@ constexpr uint32_t photons_at_once = 1u << 16;  // their rows take 22 MB
 constexpr uint32_t tile_size = 32;              // a multiple of every WIDTH
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Are both the same plane, seen from the same side? As a patch's plane is compared with a pixel's.
-bool is_same_plane(const float* a, const float* b) {
-  const float along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  return along > 0.9999f && std::abs(a[VIEW_OFFSET] - b[VIEW_OFFSET]) <= std::min(a[VIEW_TOLERANCE], b[VIEW_TOLERANCE]);
+/// Are both the same plane, seen from the same side? As a patch's plane is compared with a pixel's; fields are `stride` apart.
+bool is_same_plane(const float* a, const float* b, size_t stride) {
+  const float along = a[0] * b[0] + a[stride] * b[stride] + a[2 * stride] * b[2 * stride];
+  return along > 0.9999f && std::abs(a[VIEW_OFFSET * stride] - b[VIEW_OFFSET * stride]) <=
+                                std::min(a[VIEW_TOLERANCE * stride], b[VIEW_TOLERANCE * stride]);
 }
 
 }  // namespace
@@ -32,27 +33,30 @@ PatchView::PatchView(const KernelContext& context) : context_(context) {
   cl::Kernel look = context.kernels.get("look_at_corners");
   const unsigned next = context.device_scene.set_arguments(look);
   set_arguments(look, next, context.device_scene.camera, context.data.eye_media, corner_stride, at_corners);
-  device.launch("patches", look, context.packets(corners));
+  device.launch("patches: look", look, context.packets(corners));
   const std::vector<float> fields = device.read(at_corners, 0, at_corners.size());
-  const auto plane_at = [&](uint32_t column, uint32_t row) {
-    std::array<float, VIEW_FIELDS> plane;
-    for (size_t field = 0; field < VIEW_FIELDS; ++field) plane[field] = fields[field * corner_stride + row * (width + 1) + column];
-    return plane;
-  };
-  // A pixel shows one plane if its own corners and its neighbours' do, so that what ends just beside it is none of it.
+  // Do the four corners of a pixel show one plane? Beyond the picture's borders they may.
+  std::vector<uint8_t> at_own_corners(size_t{width + 2} * (height + 2), 1);
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      const float* corner = &fields[y * (width + 1) + x];
+      at_own_corners[(y + 1) * (width + 2) + x + 1] = is_same_plane(corner, corner + 1, corner_stride) &&
+                                                      is_same_plane(corner, corner + width + 1, corner_stride) &&
+                                                      is_same_plane(corner, corner + width + 2, corner_stride);
+    }
+  // A pixel shows one plane if its neighbours do so too, so that what ends just beside it is none of it.
   std::vector<float> planes(size_t{VIEW_FIELDS} * stride_, 0.0f);
   std::fill_n(planes.begin(), stride_, nan);
   is_all_ = true;
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x) {
-      const auto plane = plane_at(x, y);
       bool is_one = true;
-      for (uint32_t row = std::max(y, 1u) - 1; row <= std::min(y + 2, height) && is_one; ++row)
-        for (uint32_t column = std::max(x, 1u) - 1; column <= std::min(x + 2, width) && is_one; ++column)
-          is_one = is_same_plane(plane.data(), plane_at(column, row).data());
+      for (uint32_t row = y; row < y + 3; ++row)
+        for (uint32_t column = x; column < x + 3; ++column) is_one &= at_own_corners[row * (width + 2) + column] != 0;
       is_all_ &= is_one;
       if (!is_one) continue;
-      for (size_t field = 0; field < VIEW_FIELDS; ++field) planes[field * stride_ + y * pitch_ + x] = plane[field];
+      for (size_t field = 0; field < VIEW_FIELDS; ++field)
+        planes[field * stride_ + y * pitch_ + x] = fields[field * corner_stride + y * (width + 1) + x];
     }
   planes_ = device.upload(planes, "caustic seen directly");
   irradiance_ = device.allocate<float>(size_t{3} * stride_, "caustic seen directly");
@@ -66,7 +70,7 @@ bool PatchView::add(const PhotonRuns& runs, const kernel::FootprintLimits& limit
   const auto all_runs = static_cast<uint32_t>(runs.reports.size()), most_runs = photons_at_once / runs.length;
   const uint32_t at_once = std::min(all_runs, most_runs);
   if (reports_.size() < at_once) {
-    rows_ = device.allocate<float>(size_t{PATCH_FIELDS} * kernel::patches_stride(runs.length) * at_once, "caustic seen directly");
+    rows_ = device.allocate<float>(size_t{PATCH_ROW} * kernel::patches_stride(runs.length) * at_once, "caustic seen directly");
     boxes_ = device.allocate<float>(size_t{4} * kernel::patch_boxes(runs.length) * at_once, "caustic seen directly");
     reports_ = device.allocate<kernel::PatchRunData>(at_once, "caustic seen directly");
   }
@@ -78,10 +82,10 @@ bool PatchView::add(const PhotonRuns& runs, const kernel::FootprintLimits& limit
     const uint32_t n_runs = std::min(at_once, all_runs - first);
     set_arguments(project, 0, context_.device_scene.camera, first, n_runs, runs.length, runs.lattice, limits, runs.photons,
                   runs.landings, runs.on_device, rows_, boxes_, reports_);
-    device.launch_singly("patches", project, n_runs);
+    device.launch_singly("patches: project", project, n_runs);
     set_arguments(draw, 0, context_.device_scene.camera, n_runs, runs.length, tile_size, rows_, boxes_, reports_, pitch_, stride_,
                   planes_, irradiance_);
-    device.launch_singly("patches", draw, tiles);
+    device.launch_singly("patches: draw", draw, tiles);
     for (const kernel::PatchRunData& run : device.read(reports_, 0, n_runs)) reaches_behind |= run.behind != 0;
   }
   return !reaches_behind;

@@ -1,6 +1,7 @@
 #include "render/photon_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -44,16 +45,21 @@ float automatic_radius(std::span<const glm::vec3> places, uint64_t count, double
   for (size_t i = 0; i < places.size(); i += (places.size() + judging_places - 1) / judging_places)
     sample.push_back(places[i]);
   constexpr size_t k = 8;
-  std::vector<float> distance2(sample.size()), radius2;
+  std::vector<float> radius2;
   for (size_t place = 0; place < sample.size(); place += (sample.size() + judged_places - 1) / judged_places) {
     const glm::vec3 p = sample[place];
-    for (size_t i = 0; i < sample.size(); ++i) {
-      const glm::vec3 d = sample[i] - p;
-      distance2[i] = glm::dot(d, d);
+    // The least squared distances, in order; that of the place itself is the first.
+    std::array<float, k + 1> least;
+    least.fill(std::numeric_limits<float>::infinity());
+    for (const glm::vec3& other : sample) {
+      const glm::vec3 d = other - p;
+      const float distance2 = glm::dot(d, d);
+      if (!(distance2 < least[k])) continue;
+      size_t at = k;
+      for (; at > 0 && least[at - 1] > distance2; --at) least[at] = least[at - 1];
+      least[at] = distance2;
     }
-    // The place itself is the first.
-    std::nth_element(distance2.begin(), distance2.begin() + k, distance2.end());
-    radius2.push_back(distance2[k]);
+    radius2.push_back(least[k]);
   }
   std::nth_element(radius2.begin(), radius2.begin() + static_cast<std::ptrdiff_t>(radius2.size() / 2), radius2.end());
   const double thinning = static_cast<double>(sample.size()) / static_cast<double>(std::max<uint64_t>(count, 1));
