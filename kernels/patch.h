@@ -4,15 +4,18 @@
 // Interaction Using Backward Beam Tracing, 1990. Nothing is blurred by it, so that its error falls faster than that of
 // kernels about each photon (footprint.h), which are for what is not seen directly.
 //
+// It is taken in square spots, of which a pixel has `detail` along each side: 1 where the receiver's reflectance is one, else
+// more, since the product of both is wanted and not that of their means.
+//
 // Rows of patches, by runs of photons, field f of row i of a run at [PATCH_ROW * i + f].
 #ifndef VITRUM_PATCH_H
 #define VITRUM_PATCH_H
 
 #include "portability.h"
 
-#define PATCH_CORNER 0         // x and y of four corners in turn [pixels]; of a tent: its middle, then its half widths
+#define PATCH_CORNER 0         // x and y of four corners in turn [spots]; of a tent: its middle, then its half widths
 #define PATCH_POWER 8          // 3 floats [W]
-#define PATCH_SCALE 11         // of triangles (0, 1, 2) and (0, 2, 3): their area in the picture by their area [pixels / m2]
+#define PATCH_SCALE 11         // of triangles (0, 1, 2) and (0, 2, 3): their area in the picture by their area [spots / m2]
 #define PATCH_NORMAL 13        // 3 floats: of the receiver, to the side that is lit
 #define PATCH_OFFSET 16        // the receiver's plane along it [m]
 #define PATCH_FIELDS 17
@@ -36,6 +39,14 @@ typedef struct {
 #define VIEW_TOLERANCE 4       // how far off places on it may be for their roundings [m]
 #define VIEW_FIELDS 5
 
+// Where pixels and spots lie in their buffers.
+typedef struct {
+  uint detail;                 // spots along a pixel's side: 1, 2 or 4
+  uint plane_stride;           // of fields of pixels
+  uint pitch;                  // of rows of spots
+  uint spot_stride;            // of red, green and blue
+} ViewLayout;
+
 #ifdef __OPENCL_VERSION__
 #include "switches.h"
 #include "scene.h"
@@ -43,33 +54,38 @@ typedef struct {
 // A kernel that shows what was drawn lists `PATCH_VIEW_PARAMETERS` and starts with `const PatchView view = PATCH_VIEW;`. The
 // host sets the arguments in the same order (src/render/patch_view.cpp).
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
+#define PATCH_VIEW_PARAMETERS , const ViewLayout view_layout, __global const float *view_planes, __global const float *spots
+#define PATCH_VIEW { view_layout, view_planes, spots }
 typedef struct {
-  uint pitch;                  // of the picture's rows
-  uint stride;                 // of planes of it
+  ViewLayout layout;
   __global const float* planes;
-  __global const float* irradiance;    // 3 planes [W/m2]
+  __global const float* spots;         // their irradiance, 3 planes [W/m2]
 } PatchView;
-#define PATCH_VIEW_PARAMETERS                                                                                          \
-  , const uint view_pitch, const uint view_stride, __global const float *view_planes, __global const float *view_irradiance
-#define PATCH_VIEW { view_pitch, view_stride, view_planes, view_irradiance }
 
 // What pixels show all over.
 typedef struct {
   Vec3 normal;                 // NaN: not one plane
   Float offset, tolerance;
-  Vec3 irradiance;
 } ShownPlane;
 
-FUNCTION ShownPlane plane_shown(const PatchView view, const Uint column, const Uint row) {
-  const Uint i = row * view.pitch + column;
+FUNCTION ShownPlane plane_shown(const PatchView view, const Uint pixel) {
+  const uint stride = view.layout.plane_stride;
   ShownPlane shown;
-  shown.normal = make_vec3(GATHER(Float, view.planes, i), GATHER(Float, view.planes + view.stride, i),
-                           GATHER(Float, view.planes + 2 * view.stride, i));
-  shown.offset = GATHER(Float, view.planes + VIEW_OFFSET * view.stride, i);
-  shown.tolerance = GATHER(Float, view.planes + VIEW_TOLERANCE * view.stride, i);
-  shown.irradiance = make_vec3(GATHER(Float, view.irradiance, i), GATHER(Float, view.irradiance + view.stride, i),
-                               GATHER(Float, view.irradiance + 2 * view.stride, i));
+  shown.normal = make_vec3(GATHER(Float, view.planes, pixel), GATHER(Float, view.planes + stride, pixel),
+                           GATHER(Float, view.planes + 2 * stride, pixel));
+  shown.offset = GATHER(Float, view.planes + VIEW_OFFSET * stride, pixel);
+  shown.tolerance = GATHER(Float, view.planes + VIEW_TOLERANCE * stride, pixel);
   return shown;
+}
+
+// At (x, y) from 0 to 1 in pixels.
+FUNCTION Vec3 irradiance_shown(const PatchView view, const Uint column, const Uint row, const Float x, const Float y) {
+  const uint detail = view.layout.detail;
+  const uint stride = view.layout.spot_stride;
+  const Uint spot_column = column * detail + AS_UINT(TO_INT(x * (float)detail));
+  const Uint spot = (row * detail + AS_UINT(TO_INT(y * (float)detail))) * view.layout.pitch + spot_column;
+  return make_vec3(GATHER(Float, view.spots, spot), GATHER(Float, view.spots + stride, spot),
+                   GATHER(Float, view.spots + 2 * stride, spot));
 }
 
 FUNCTION Mask is_on(const ShownPlane* shown, const Vec3 place, const Vec3 normal) {
@@ -77,7 +93,7 @@ FUNCTION Mask is_on(const ShownPlane* shown, const Vec3 place, const Vec3 normal
 }
 #else
 typedef struct {
-  uint pitch;                  // 0: there are no patches
+  uint detail;                 // 0: there are no patches
 } PatchView;
 #define PATCH_VIEW_PARAMETERS
 #define PATCH_VIEW { 0 }

@@ -27,6 +27,10 @@ FUNCTION CameraRays camera_rays(__global const CameraData* camera, __global cons
   CameraRays rays;
   rays.rays.origin = uniform3(camera->eye);
   rays.rays.direction = direction_through(camera, TO_FLOAT(AS_INT(column)) + jx, TO_FLOAT(AS_INT(row)) + jy);
+#if CAUSTICS == CAUSTICS_FOOTPRINTS
+  rays.x = jx;
+  rays.y = jy;
+#endif
   rays.rays.t_min = 0.0f;
   rays.rays.t_max = INFINITY;
   rays.weight = make_vec3(1.0f, 1.0f, 1.0f);
@@ -100,8 +104,9 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, 
   Vec3 beauty = load_film3(film, FILM_BEAUTY, film_stride, i);
   Float cut = LOAD(film, FILM_CUT * film_stride + i);
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
+  const ShownPlane shown = plane_shown(view, pixels);
   const Uint row = pixels / camera_data->width;
-  const ShownPlane shown = plane_shown(view, pixels - row * camera_data->width, row);
+  const Uint column = pixels - row * camera_data->width;
 #endif
   uint secondary_rays = 0;
   uint shadow_rays = 0;
@@ -129,7 +134,8 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, 
         const Vec3 outward = surface.geometric_normal;
         const Mask drawn =
             receives & is_on(&shown, surface.position, select3(surface.entering, outward, negate3(outward)));
-        const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, shown.irradiance));
+        const Vec3 irradiance = irradiance_shown(view, column, row, camera.x, camera.y);
+        const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));
         radiance = select3(drawn, add3(radiance, caustic), radiance);
         caustics = select3(drawn, add3(caustics, caustic), caustics);
         receives &= drawn == 0;

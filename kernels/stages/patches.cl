@@ -28,7 +28,7 @@ KERNEL void look_at_corners(SCENE_PARAMETERS, __global const CameraData* camera,
   FOR_LANES(lane, lanes_below(i, count) & (surface.t < INFINITY)) {
     __global const MaterialData* material = &scene.materials[LANE(surface.material, uint, lane)];
     SET_LANE(plain, int, lane,
-             material->surface == SURFACE_OPAQUE && material->texture == NO_INDEX && is_diffuse(material) ? -1 : 0);
+             material->surface == SURFACE_OPAQUE && is_diffuse(material) ? -1 : 0);
   }
   const Vec3 normal = select3(surface.entering, surface.geometric_normal, negate3(surface.geometric_normal));
   STORE(planes, VIEW_NORMAL * stride + i, plain ? normal.x : (Float)NAN);
@@ -66,7 +66,7 @@ FUNCTION void put_rows(const Mask which, const Float* values, __global float* ro
 }
 
 // The corners in the picture and what a triangle's area is there, of quadrangles in a plane. Returns those in view.
-FUNCTION Mask project_corners(__global const CameraData* camera, const Vec3* corners, const Vec3 normal, const Mask which,
+FUNCTION Mask project_corners(__global const CameraData* camera, const float detail, const Vec3* corners, const Vec3 normal, const Mask which,
                               Float* values, Mask* behind) {
   Seen seen[4];
   for (uint k = 0; k < 4; ++k) seen[k] = seen_at(camera, corners[k]);
@@ -74,18 +74,18 @@ FUNCTION Mask project_corners(__global const CameraData* camera, const Vec3* cor
   const Mask clear = seen[0].clear & seen[1].clear & seen[2].clear & seen[3].clear;
   *behind |= in_view & (clear == 0);
   for (uint k = 0; k < 4; ++k) {
-    values[PATCH_CORNER + 2 * k] = seen[k].x;
-    values[PATCH_CORNER + 2 * k + 1] = seen[k].y;
+    values[PATCH_CORNER + 2 * k] = detail * seen[k].x;
+    values[PATCH_CORNER + 2 * k + 1] = detail * seen[k].y;
   }
-  const float pixel = camera->step_x * camera->step_y;
-  const Float height = fabs(dot3(normal, subtract3(corners[0], uniform3(camera->eye)))) / pixel;
+  const float spot = camera->step_x * camera->step_y / (detail * detail);
+  const Float height = fabs(dot3(normal, subtract3(corners[0], uniform3(camera->eye)))) / spot;
   const Float shared = seen[0].depth * seen[2].depth;
   values[PATCH_SCALE] = height / (shared * seen[1].depth);
   values[PATCH_SCALE + 1] = height / (shared * seen[3].depth);
   return in_view & clear;
 }
 
-BODY project_run(__global const CameraData* camera, const uint stored, const uint run_length,
+BODY project_run(__global const CameraData* camera, const float detail, const uint stored, const uint run_length,
                  __global const float* restrict fields, __global const float* restrict landings, const LatticeData lattice,
                  const FootprintLimits limits, __global float* restrict rows, __global float* restrict boxes,
                  __global PatchRunData* restrict report) {
@@ -139,7 +139,7 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
       }
 
       const Vec3 corners[4] = {place, side[0].place, opposite, side[2].place};
-      Mask shown = project_corners(camera, corners, normal, on_lattice & (torn[0] == 0), values, &behind);
+      Mask shown = project_corners(camera, detail, corners, normal, on_lattice & (torn[0] == 0), values, &behind);
       const Vec3 sum = add3(add3(power, side[0].power), add3(opposite_power, side[2].power));
       values[PATCH_POWER + 0] = 0.25f * sum.x;
       values[PATCH_POWER + 1] = 0.25f * sum.y;
@@ -173,7 +173,7 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
         const Vec3 high = along3(place, high_u, along[0]);
         const Vec3 rest[4] = {along3(low, low_v, along[1]), along3(high, low_v, along[1]), along3(high, high_v, along[1]),
                               along3(low, high_v, along[1])};
-        shown = project_corners(camera, rest, normal, is_torn, values, &behind);
+        shown = project_corners(camera, detail, rest, normal, is_torn, values, &behind);
         torn_power = 0.25f * torn_quadrants;
         values[PATCH_POWER + 0] = torn_power * power.x;
         values[PATCH_POWER + 1] = torn_power * power.y;
@@ -197,13 +197,13 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
       const Float down_y = dot3(down, frame.y);
       const Float wide = side * sqrt(fma(across_x, across_x, across_y * across_y)) / camera->step_x;
       const Float high = side * sqrt(fma(down_x, down_x, down_y * down_y)) / camera->step_y;
-      values[PATCH_CORNER + 0] = seen.x;
-      values[PATCH_CORNER + 1] = seen.y;
-      values[PATCH_CORNER + 2] = larger(wide, (Float)1e-3f);
-      values[PATCH_CORNER + 3] = larger(high, (Float)1e-3f);
-      for (uint k = 4; k < 8; ++k) values[PATCH_CORNER + k] = k % 2 == 0 ? seen.x : seen.y;
-      values[PATCH_SCALE] =
-          fabs(dot3(normal, d)) / (seen.depth * seen.depth * (camera->step_x * camera->step_y));
+      values[PATCH_CORNER + 0] = detail * seen.x;
+      values[PATCH_CORNER + 1] = detail * seen.y;
+      values[PATCH_CORNER + 2] = detail * larger(wide, (Float)1e-3f);
+      values[PATCH_CORNER + 3] = detail * larger(high, (Float)1e-3f);
+      for (uint k = 4; k < 8; ++k) values[PATCH_CORNER + k] = values[PATCH_CORNER + k % 2];
+      values[PATCH_SCALE] = fabs(dot3(normal, d)) * (detail * detail) /
+                            (seen.depth * seen.depth * (camera->step_x * camera->step_y));
       values[PATCH_SCALE + 1] = PATCH_TENT;
       values[PATCH_POWER + 0] = power.x;
       values[PATCH_POWER + 1] = power.y;
@@ -232,7 +232,7 @@ BODY project_run(__global const CameraData* camera, const uint stored, const uin
 }
 
 // Runs [first_run, first_run + n_runs) of photons to runs [0, n_runs) of patches.
-KERNEL void project_patches(__global const CameraData* camera, const uint first_run, const uint n_runs,
+KERNEL void project_patches(__global const CameraData* camera, const uint detail, const uint first_run, const uint n_runs,
                             const uint run_length, const LatticeData lattice, const FootprintLimits limits,
                             __global const float* photons, __global const float* landings,
                             __global const PhotonRunData* runs, __global float* rows, __global float* boxes,
@@ -240,63 +240,61 @@ KERNEL void project_patches(__global const CameraData* camera, const uint first_
   const uint i = get_global_id(0);
   if (i >= n_runs) return;
   const uint run = first_run + i;
-  project_run(camera, runs[run].photons[OUTCOME_STORED], run_length,
+  project_run(camera, (float)detail, runs[run].photons[OUTCOME_STORED], run_length,
               photons + photon_in_run(run_length, run, 0, FOOTPRINT_ROW), landings, lattice, limits,
               rows + (ulong)i * PATCH_ROW * patches_stride(run_length), boxes + 4u * i * patch_boxes(run_length),
               &reports[i]);
 }
 
-// What patches are drawn to: a tile of the picture, in packets of PIXELS. Its sides, and the picture's rows, hold whole ones.
-#define PIXELS 4
+// What patches are drawn to: a tile of the picture, in packets of SPOTS. Its sides, and the picture's rows, hold whole ones.
+#define SPOTS 4
 typedef struct {
-  int left, top, right, bottom;        // [pixels], the last two outside
-  uint pitch;                          // of rows
-  uint stride;                         // of planes
+  int left, top, right, bottom;        // [spots], the last two outside
+  uint width;                          // of the picture [pixels]
   int is_one;                          // all pixels show the plane of the first
+  ViewLayout layout;
   __global const float* planes;        // by pixel, VIEW_...
-  __global float* irradiance;          // 3 planes [W/m2]
+  __global float* irradiance;          // by spot, 3 planes [W/m2]
 } Tile;
 
-// Do pixels from `i` on show a plane?
-FUNCTION int4 show_plane(const Tile tile, const float4 plane, const uint i) {
-  __global const float* shown = tile.planes + i;
-  const float4 along = vload4(0, shown + VIEW_NORMAL * tile.stride) * plane.x +
-                       vload4(0, shown + (VIEW_NORMAL + 1) * tile.stride) * plane.y +
-                       vload4(0, shown + (VIEW_NORMAL + 2) * tile.stride) * plane.z;
-  const float4 off = fabs(vload4(0, shown + VIEW_OFFSET * tile.stride) - plane.w);
-  return (along > 0.9999f) & (off <= vload4(0, shown + VIEW_TOLERANCE * tile.stride));
+// Does the pixel of spot (x, y) show a plane?
+FUNCTION int shows_plane(const Tile tile, const float4 plane, const int x, const int y) {
+  const uint column = (uint)x / tile.layout.detail;
+  if (column >= tile.width) return 0;
+  __global const float* shown = tile.planes + (uint)y / tile.layout.detail * tile.width + column;
+  const uint stride = tile.layout.plane_stride;
+  const float along = shown[VIEW_NORMAL * stride] * plane.x + shown[(VIEW_NORMAL + 1) * stride] * plane.y +
+                      shown[(VIEW_NORMAL + 2) * stride] * plane.z;
+  return along > 0.9999f && fabs(shown[VIEW_OFFSET * stride] - plane.w) <= shown[VIEW_TOLERANCE * stride];
 }
 
-// Adds `power` times `shares` to the packet of pixels from (x, y) on.
-FUNCTION void add_to_pixels(const Tile tile, const float4 plane, const float3 power, const float4 shares, const int x,
-                            const int y) {
-  const uint i = (uint)y * tile.pitch + (uint)x;
-  const float4 share = tile.is_one ? shares : show_plane(tile, plane, i) ? shares : (float4)(0.0f);
-  __global float* to = tile.irradiance + i;
+// Adds `power` times `shares` to the packet of spots from (x, y) on.
+FUNCTION void add_to_spots(const Tile tile, const float4 plane, const float3 power, const float4 shares, const int x,
+                           const int y) {
+  float4 share = shares;
+  if (!tile.is_one)
+    for (int k = 0; k < SPOTS; ++k)
+      if (!shows_plane(tile, plane, x + k, y)) ((float*)&share)[k] = 0.0f;
+  const uint stride = tile.layout.spot_stride;
+  __global float* to = tile.irradiance + (uint)y * tile.layout.pitch + (uint)x;
   vstore4(vload4(0, to) + power.x * share, 0, to);
-  vstore4(vload4(0, to + tile.stride) + power.y * share, 0, to + tile.stride);
-  vstore4(vload4(0, to + 2 * tile.stride) + power.z * share, 0, to + 2 * tile.stride);
+  vstore4(vload4(0, to + stride) + power.y * share, 0, to + stride);
+  vstore4(vload4(0, to + 2 * stride) + power.z * share, 0, to + 2 * stride);
 }
 
-// The first of the packet that pixel x of a tile is in.
-FUNCTION int packet_of(const Tile tile, const int x) { return tile.left + (max(x, tile.left) - tile.left) / PIXELS * PIXELS; }
-
-FUNCTION void add_to_pixel(const Tile tile, const float4 plane, const float3 power, const float2 place) {
+FUNCTION void add_to_spot(const Tile tile, const float4 plane, const float3 power, const float2 place) {
   const int x = (int)floor(place.x);
   const int y = (int)floor(place.y);
   if (x < tile.left || x >= tile.right || y < tile.top || y >= tile.bottom) return;
-  const uint i = (uint)y * tile.pitch + (uint)x;
-  const int packet = packet_of(tile, x);
-  if (!tile.is_one) {
-    const int4 shows = show_plane(tile, plane, (uint)y * tile.pitch + (uint)packet);
-    if (!((const int*)&shows)[x - packet]) return;
-  }
-  tile.irradiance[i] += power.x;
-  tile.irradiance[tile.stride + i] += power.y;
-  tile.irradiance[2 * tile.stride + i] += power.z;
+  if (!tile.is_one && !shows_plane(tile, plane, x, y)) return;
+  const uint stride = tile.layout.spot_stride;
+  __global float* to = tile.irradiance + (uint)y * tile.layout.pitch + (uint)x;
+  to[0] += power.x;
+  to[stride] += power.y;
+  to[2 * stride] += power.z;
 }
 
-// Of pixels whose left sides are at `left`, four of a row and four of the next, the share that lies left of an edge: the mean
+// Of spots whose left sides are at `left`, four of a row and four of the next, the share that lies left of an edge: the mean
 // over the edge's piece from a to b, a <= b, in each row of clamp(x - left, 0, 1). `inverse`: of b - a.
 FUNCTION float8 share_left_of(const float8 a, const float8 b, const float8 inverse, const float8 left) {
   const float8 from = a - left;
@@ -312,7 +310,7 @@ FUNCTION float share_below(const float t, const float middle) {
   return t < middle ? t * t / middle : 1.0f - (1.0f - t) * (1.0f - t) / (1.0f - middle);
 }
 
-// Adds `power` along a triangle that is thinner than areas of pixels can tell, pixel by pixel (Amanatides and Woo, A Fast
+// Adds `power` along a triangle that is thinner than areas of spots can tell, spot by spot (Amanatides and Woo, A Fast
 // Voxel Traversal Algorithm for Ray Tracing, 1987).
 FUNCTION void draw_line(const Tile tile, const float4 plane, const float3 power, const float2 a, const float2 b,
                         const float2 c) {
@@ -327,22 +325,22 @@ FUNCTION void draw_line(const Tile tile, const float4 plane, const float3 power,
   const float2 along = ab2 == longest2 ? ab : bc2 == longest2 ? bc : ca;
   const float2 corner = (ab2 == longest2 ? c : bc2 == longest2 ? a : b) - from;
   const float middle = clamp((corner.x * along.x + corner.y * along.y) / longest2, 0.0f, 1.0f);
-  float2 pixel = floor(from);
+  float2 spot = floor(from);
   const float2 last = floor(from + along);
   const float2 step = (float2)(along.x < 0.0f ? -1.0f : 1.0f, along.y < 0.0f ? -1.0f : 1.0f);
   const float2 size = 1.0f / fmax(fabs(along), 1e-9f);
-  float2 next = (step * (pixel - from) + (float2)(along.x < 0.0f ? 0.0f : 1.0f, along.y < 0.0f ? 0.0f : 1.0f)) * size;
-  const uint borders = (uint)(fabs(last.x - pixel.x) + fabs(last.y - pixel.y));
+  float2 next = (step * (spot - from) + (float2)(along.x < 0.0f ? 0.0f : 1.0f, along.y < 0.0f ? 0.0f : 1.0f)) * size;
+  const uint borders = (uint)(fabs(last.x - spot.x) + fabs(last.y - spot.y));
   float done = 0.0f;
   for (uint border = 0; border <= borders; ++border) {
     const float share = border < borders ? share_below(clamp(min(next.x, next.y), 0.0f, 1.0f), middle) : 1.0f;
-    add_to_pixel(tile, plane, max(share - done, 0.0f) * power, pixel + 0.5f);
+    add_to_spot(tile, plane, max(share - done, 0.0f) * power, spot + 0.5f);
     done = max(share, done);
     if (next.x < next.y) {
-      pixel.x += step.x;
+      spot.x += step.x;
       next.x += size.x;
     } else {
-      pixel.y += step.y;
+      spot.y += step.y;
       next.y += size.y;
     }
   }
@@ -354,7 +352,7 @@ FUNCTION float least_of(const float8 v) {
   return min(of_two.x, of_two.y);
 }
 
-// Adds `power` times `scales` of triangles a, b, c and a, c, d by their areas in each pixel.
+// Adds `power` times `scales` of triangles a, b, c and a, c, d by their areas in each spot.
 FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 power, const float2 scales, const float2 a,
                              const float2 b, const float2 c, const float2 d) {
   const float2 low = fmin(fmin(a, b), fmin(c, d));
@@ -369,7 +367,7 @@ FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 p
       (float2)((from_x.s1 - from_x.s0) * (from_y.s2 - from_y.s0) - (from_y.s1 - from_y.s0) * (from_x.s2 - from_x.s0),
                (from_x.s2 - from_x.s0) * (from_y.s3 - from_y.s0) - (from_y.s2 - from_y.s0) * (from_x.s3 - from_x.s0));
   const float longest = max(high.x - low.x, high.y - low.y);
-  // Those thinner than areas of pixels can tell are lines.
+  // Those thinner than areas of spots can tell are lines.
   const int2 has_area = fabs(twice_area) > 2e-3f * longest;
   if (!has_area.x) draw_line(tile, plane, 0.5f * scales.x * power, a, b, c);
   if (!has_area.y) draw_line(tile, plane, 0.5f * scales.y * power, a, c, d);
@@ -403,9 +401,9 @@ FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 p
     const float16 weight = density2 * (end - start);
     const float16 firsts = passes ? left : (float16)(INFINITY);
     const float16 lasts = passes ? -right : (float16)(INFINITY);
-    const int first = (int)clamp(least_of(fmin(firsts.lo, firsts.hi)), 0.0f, size.x) / PIXELS * PIXELS;
+    const int first = (int)clamp(least_of(fmin(firsts.lo, firsts.hi)), 0.0f, size.x) / SPOTS * SPOTS;
     const int last = (int)clamp(1.0f - least_of(fmin(lasts.lo, lasts.hi)), 0.0f, size.x);
-    for (int column = first; column < last; column += PIXELS) {
+    for (int column = first; column < last; column += SPOTS) {
       const float8 left_sides = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 0.0f, 1.0f, 2.0f, 3.0f) + (float)column;
       float8 share = 0.0f;
 #define ADD_EDGE(k, l)                                                                                                 \
@@ -418,8 +416,8 @@ FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 p
       ADD_EDGE(s3, sb);
       ADD_EDGE(s4, sc);
 #undef ADD_EDGE
-      add_to_pixels(tile, plane, power, share.lo, tile.left + column, tile.top + row);
-      if (row + 1 < end_row) add_to_pixels(tile, plane, power, share.hi, tile.left + column, tile.top + row + 1);
+      add_to_spots(tile, plane, power, share.lo, tile.left + column, tile.top + row);
+      if (row + 1 < end_row) add_to_spots(tile, plane, power, share.hi, tile.left + column, tile.top + row + 1);
     }
   }
 }
@@ -435,21 +433,20 @@ FUNCTION void draw_tent(const Tile tile, const float4 plane, const float3 power,
                         const float2 half_width) {
   const int first_row = max((int)floor(max(middle.y - half_width.y, -1.0f)), tile.top);
   const int last_row = min((int)ceil(min(middle.y + half_width.y, 1e6f)), tile.bottom);
-  const int first_column = packet_of(tile, (int)floor(clamp(middle.x - half_width.x, 0.0f, 1e6f)));
+  const int first_column = tile.left + max((int)floor(clamp(middle.x - half_width.x, 0.0f, 1e6f)) - tile.left, 0) / SPOTS * SPOTS;
   const int last_column = min((int)ceil(min(middle.x + half_width.x, 1e6f)), tile.right);
   for (int y = first_row; y < last_row; ++y) {
     const float4 borders = tent_below(((float)y + (float4)(0.0f, 1.0f, 0.0f, 0.0f) - middle.y) / half_width.y);
     const float in_row = borders.y - borders.x;
-    for (int x = first_column; x < last_column; x += PIXELS) {
+    for (int x = first_column; x < last_column; x += SPOTS) {
       const float4 left = ((float4)(0.0f, 1.0f, 2.0f, 3.0f) + ((float)x - middle.x)) / half_width.x;
-      add_to_pixels(tile, plane, power, in_row * (tent_below(left + 1.0f / half_width.x) - tent_below(left)), x, y);
+      add_to_spots(tile, plane, power, in_row * (tent_below(left + 1.0f / half_width.x) - tent_below(left)), x, y);
     }
   }
 }
 
 BODY draw_run(const Tile tile, const uint count, __global const float* restrict rows, __global const float* restrict boxes) {
   const float4 sides = (float4)((float)tile.left, (float)tile.top, (float)tile.right, (float)tile.bottom);
-  const uint first_pixel = (uint)tile.top * tile.pitch + (uint)tile.left;
   for (uint i = 0; i < count; ++i) {
     if (i % PATCH_BLOCK == 0) {
       const float4 box = vload4(i / PATCH_BLOCK, boxes);
@@ -464,50 +461,53 @@ BODY draw_run(const Tile tile, const uint count, __global const float* restrict 
     const float2 scales = vload2(0, row + PATCH_SCALE);
     const float4 plane = vload4(0, row + PATCH_NORMAL);
     if (scales.y == PATCH_TENT) {
-      if (!tile.is_one || show_plane(tile, plane, first_pixel).x)
+      if (!tile.is_one || shows_plane(tile, plane, tile.left, tile.top))
         draw_tent(tile, plane, scales.x * power, corners.s01, corners.s23);
       continue;
     }
     const float2 low = fmin(fmin(corners.s01, corners.s23), fmin(corners.s45, corners.s67));
     const float2 high = fmax(fmax(corners.s01, corners.s23), fmax(corners.s45, corners.s67));
     if (any(low >= sides.hi) || any(high <= sides.lo)) continue;
-    if (tile.is_one && !show_plane(tile, plane, first_pixel).x) continue;
+    if (tile.is_one && !shows_plane(tile, plane, tile.left, tile.top)) continue;
     if (all(floor(low) == floor(high)))
-      add_to_pixel(tile, plane, 0.5f * (scales.x + scales.y) * power, low);
+      add_to_spot(tile, plane, 0.5f * (scales.x + scales.y) * power, low);
     else
       draw_triangles(tile, plane, power, scales, corners.s01, corners.s23, corners.s45, corners.s67);
   }
 }
 
-// Adds n_runs runs of patches to tiles of `tile_size` pixels' side, row by row of tiles. `tile_size` and `pitch` are multiples
-// of PIXELS.
+// Adds n_runs runs of patches to tiles of `tile_size` spots' side, row by row of tiles. `tile_size` and the rows' pitch are
+// multiples of SPOTS, and tile_size one of detail.
 KERNEL void draw_patches(__global const CameraData* camera, const uint n_runs, const uint run_length, const uint tile_size,
                          __global const float* rows, __global const float* boxes, __global const PatchRunData* reports,
-                         const uint pitch, const uint stride, __global const float* planes, __global float* irradiance) {
-  const uint across = (camera->width + tile_size - 1u) / tile_size;
-  const uint down = (camera->height + tile_size - 1u) / tile_size;
+                         const ViewLayout layout, __global const float* planes, __global float* irradiance) {
+  const uint across = (camera->width * layout.detail + tile_size - 1u) / tile_size;
+  const uint down = (camera->height * layout.detail + tile_size - 1u) / tile_size;
   const uint i = get_global_id(0);
   if (i >= across * down) return;
   Tile tile;
   tile.left = (int)(i % across * tile_size);
   tile.top = (int)(i / across * tile_size);
-  tile.right = min(tile.left + (int)tile_size, (int)pitch);
-  tile.bottom = min(tile.top + (int)tile_size, (int)camera->height);
-  tile.pitch = pitch;
-  tile.stride = stride;
+  tile.right = min(tile.left + (int)tile_size, (int)layout.pitch);
+  tile.bottom = min(tile.top + (int)tile_size, (int)(camera->height * layout.detail));
+  tile.width = camera->width;
+  tile.layout = layout;
   tile.planes = planes;
   tile.irradiance = irradiance;
   // One plane all over is asked once for each patch.
-  __global const float* first = planes + (uint)tile.top * pitch + (uint)tile.left;
-  const float4 plane = (float4)(first[VIEW_NORMAL * stride], first[(VIEW_NORMAL + 1) * stride],
-                                first[(VIEW_NORMAL + 2) * stride], first[VIEW_OFFSET * stride]);
+  const uint first = (uint)tile.top / layout.detail * tile.width + (uint)tile.left / layout.detail;
+  __global const float* shown = planes + first;
+  const uint stride = layout.plane_stride;
+  const float4 plane = (float4)(shown[VIEW_NORMAL * stride], shown[(VIEW_NORMAL + 1) * stride],
+                                shown[(VIEW_NORMAL + 2) * stride], shown[VIEW_OFFSET * stride]);
+  const int right = min(tile.right, (int)(tile.width * layout.detail));
   int is_one = 1;
   int is_any = 0;
-  for (int y = tile.top; y < tile.bottom; ++y)
-    for (int x = tile.left; x < min(tile.right, (int)camera->width); ++x) {
-      const uint pixel = (uint)y * pitch + (uint)x;
-      is_one &= show_plane(tile, plane, pixel).x != 0;
-      is_any |= planes[pixel] == planes[pixel];
+  for (int y = tile.top; y < tile.bottom; y += (int)layout.detail)
+    for (int x = tile.left; x < right; x += (int)layout.detail) {
+      const float normal = planes[(uint)y / layout.detail * tile.width + (uint)x / layout.detail];
+      is_one &= shows_plane(tile, plane, x, y);
+      is_any |= normal == normal;
     }
   tile.is_one = is_one;
   if (!is_any) return;

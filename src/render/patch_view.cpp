@@ -10,7 +10,8 @@ namespace vitrum {
 namespace {
 
 constexpr uint32_t photons_at_once = 1u << 16;  // their rows take 22 MB
-constexpr uint32_t tile_size = 32;              // a multiple of every WIDTH
+constexpr uint32_t tile_size = 32;              // [spots]
+constexpr size_t most_spots = 8'000'000;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Are both the same plane, seen from the same side? As a patch's plane is compared with a pixel's; fields are `stride` apart.
@@ -25,8 +26,13 @@ bool is_same_plane(const float* a, const float* b, size_t stride) {
 PatchView::PatchView(const KernelContext& context) : context_(context) {
   Device& device = context.device;
   const auto width = static_cast<uint32_t>(context.scene.film.width), height = static_cast<uint32_t>(context.scene.film.height);
-  pitch_ = (width + tile_size - 1) / tile_size * tile_size;
-  stride_ = padded(uint64_t{pitch_} * height);
+  // Texture and irradiance of a pixel are not independent. Taking the mean of each spot is wrong by less than the camera's noise.
+  const int samples = context.scene.render.by_rounds() ? 16 : context.scene.render.samples;
+  layout_.detail = !context.features.textures || samples < 16 ? 1 : samples < 64 ? 2 : 4;
+  while (layout_.detail > 1 && size_t{layout_.detail} * layout_.detail * width * height > most_spots) layout_.detail /= 2;
+  layout_.plane_stride = padded(uint64_t{width} * height);
+  layout_.pitch = (layout_.detail * width + tile_size - 1) / tile_size * tile_size;
+  layout_.spot_stride = padded(uint64_t{layout_.pitch} * layout_.detail * height);
 
   const uint32_t corners = (width + 1) * (height + 1), corner_stride = padded(corners);
   const Buffer<float> at_corners = device.allocate<float>(size_t{VIEW_FIELDS} * corner_stride, "caustic seen directly");
@@ -45,8 +51,8 @@ PatchView::PatchView(const KernelContext& context) : context_(context) {
                                                       is_same_plane(corner, corner + width + 2, corner_stride);
     }
   // A pixel shows one plane if its neighbours do so too, so that what ends just beside it is none of it.
-  std::vector<float> planes(size_t{VIEW_FIELDS} * stride_, 0.0f);
-  std::fill_n(planes.begin(), stride_, nan);
+  std::vector<float> planes(size_t{VIEW_FIELDS} * layout_.plane_stride, 0.0f);
+  std::fill_n(planes.begin(), layout_.plane_stride, nan);
   is_all_ = true;
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x) {
@@ -56,10 +62,10 @@ PatchView::PatchView(const KernelContext& context) : context_(context) {
       is_all_ &= is_one;
       if (!is_one) continue;
       for (size_t field = 0; field < VIEW_FIELDS; ++field)
-        planes[field * stride_ + y * pitch_ + x] = fields[field * corner_stride + y * (width + 1) + x];
+        planes[field * layout_.plane_stride + y * width + x] = fields[field * corner_stride + y * (width + 1) + x];
     }
   planes_ = device.upload(planes, "caustic seen directly");
-  irradiance_ = device.allocate<float>(size_t{3} * stride_, "caustic seen directly");
+  irradiance_ = device.allocate<float>(size_t{3} * layout_.spot_stride, "caustic seen directly");
   device.fill_zero(irradiance_);
 }
 
@@ -74,16 +80,16 @@ bool PatchView::add(const PhotonRuns& runs, const kernel::FootprintLimits& limit
     boxes_ = device.allocate<float>(size_t{4} * kernel::patch_boxes(runs.length) * at_once, "caustic seen directly");
     reports_ = device.allocate<kernel::PatchRunData>(at_once, "caustic seen directly");
   }
-  const FilmSettings& film = context_.scene.film;
-  const size_t tiles = size_t{pitch_ / tile_size} * ((static_cast<uint32_t>(film.height) + tile_size - 1) / tile_size);
+  const uint32_t height = layout_.detail * static_cast<uint32_t>(context_.scene.film.height);
+  const size_t tiles = size_t{layout_.pitch / tile_size} * ((height + tile_size - 1) / tile_size);
   cl::Kernel project = context_.kernels.get("project_patches"), draw = context_.kernels.get("draw_patches");
   bool reaches_behind = false;
   for (uint32_t first = 0; first < all_runs; first += at_once) {
     const uint32_t n_runs = std::min(at_once, all_runs - first);
-    set_arguments(project, 0, context_.device_scene.camera, first, n_runs, runs.length, runs.lattice, limits, runs.photons,
+    set_arguments(project, 0, context_.device_scene.camera, layout_.detail, first, n_runs, runs.length, runs.lattice, limits, runs.photons,
                   runs.landings, runs.on_device, rows_, boxes_, reports_);
     device.launch_singly("patches: project", project, n_runs);
-    set_arguments(draw, 0, context_.device_scene.camera, n_runs, runs.length, tile_size, rows_, boxes_, reports_, pitch_, stride_,
+    set_arguments(draw, 0, context_.device_scene.camera, n_runs, runs.length, tile_size, rows_, boxes_, reports_, layout_,
                   planes_, irradiance_);
     device.launch_singly("patches: draw", draw, tiles);
     for (const kernel::PatchRunData& run : device.read(reports_, 0, n_runs)) reaches_behind |= run.behind != 0;
@@ -97,8 +103,8 @@ void PatchView::give_up() {
 }
 
 unsigned PatchView::set_arguments_of(cl::Kernel& kernel, unsigned first) const {
-  set_arguments(kernel, first, pitch_, stride_, planes_, irradiance_);
-  return first + 4;
+  set_arguments(kernel, first, layout_, planes_, irradiance_);
+  return first + 3;
 }
 
 }  // namespace vitrum

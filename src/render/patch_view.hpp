@@ -28,8 +28,7 @@ class PatchView {
  private:
   KernelContext context_;
   bool is_all_ = false;
-  uint32_t pitch_ = 0;          ///< of the picture's rows
-  uint32_t stride_ = 0;         ///< of its planes
+  kernel::ViewLayout layout_{};
   Buffer<float> planes_, irradiance_, rows_, boxes_;
   Buffer<kernel::PatchRunData> reports_;
 };
