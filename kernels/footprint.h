@@ -29,8 +29,28 @@ FUNCTION void lattice_point(const LatticeData lattice, const Uint point, Float u
 typedef struct {
   Uint column, row;            // whole steps
   Uint to_column;              // from a point to that of the next column
+  Float step;                  // of the whole lattice: 1, or BRANCH_STEP
   Mask first_column, last_column, first_row, last_row;
 } LatticePlace;
+
+// A place in the disc of emission, of radius 1, that the square is mapped to; (column, row) need not be a point.
+typedef struct {
+  Float x, y;
+} DiscPlace;
+
+FUNCTION DiscPlace place_in_disc(const LatticeData lattice, const Float column, const Float row) {
+  const Float x = fma((Float)2.0f, (column + lattice.shift_u) / (float)lattice.columns, (Float)-1.0f);
+  const Float y = fma((Float)2.0f, (row + lattice.shift_v) / (float)(1u << lattice.log2_rows), (Float)-1.0f);
+  const Mask wide = fabs(x) > fabs(y);
+  const Float radius = wide ? x : y;
+  const Float angle = 0.785398163397448f * (wide ? y : x) / (radius == 0.0f ? (Float)1.0f : radius);
+  const Float sine = radius * sin(angle);
+  const Float cosine = radius * cos(angle);
+  DiscPlace p;
+  p.x = wide ? cosine : sine;
+  p.y = wide ? sine : cosine;
+  return p;
+}
 
 FUNCTION LatticePlace place_on_lattice(const LatticeData lattice, const Uint point) {
   const uint all = lattice_points(lattice);
@@ -41,6 +61,7 @@ FUNCTION LatticePlace place_on_lattice(const LatticeData lattice, const Uint poi
   const Uint columns = is_branch ? (Uint)branch_columns(lattice) : (Uint)lattice.columns;
   LatticePlace p;
   p.to_column = (Uint)1 << log2_rows;
+  p.step = is_branch ? (Float)BRANCH_STEP : (Float)1.0f;
   p.column = (point - base) >> log2_rows;
   p.row = (point - base) & (p.to_column - 1u);
   p.first_column = p.column == 0u;

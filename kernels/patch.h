@@ -30,7 +30,7 @@ FUNCTION uint patch_boxes(uint run_length) { return (patches_stride(run_length) 
 
 typedef struct {
   uint rows;
-  uint behind;                 // 1: there is one in view that reaches behind the eye
+  uint too_many;               // 1: there was no room for some, since many reach behind the eye and are cut
 } PatchRunData;
 
 // The plane that a pixel shows all over, field f of pixel i at [f * stride + i].

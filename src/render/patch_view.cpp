@@ -83,7 +83,7 @@ bool PatchView::add(const PhotonRuns& runs, const kernel::FootprintLimits& limit
   const uint32_t height = layout_.detail * static_cast<uint32_t>(context_.scene.film.height);
   const size_t tiles = size_t{layout_.pitch / tile_size} * ((height + tile_size - 1) / tile_size);
   cl::Kernel project = context_.kernels.get("project_patches"), draw = context_.kernels.get("draw_patches");
-  bool reaches_behind = false;
+  bool has_room = true;
   for (uint32_t first = 0; first < all_runs; first += at_once) {
     const uint32_t n_runs = std::min(at_once, all_runs - first);
     set_arguments(project, 0, context_.device_scene.camera, layout_.detail, first, n_runs, runs.length, runs.lattice, limits, runs.photons,
@@ -92,9 +92,9 @@ bool PatchView::add(const PhotonRuns& runs, const kernel::FootprintLimits& limit
     set_arguments(draw, 0, context_.device_scene.camera, n_runs, runs.length, tile_size, rows_, boxes_, reports_, layout_,
                   planes_, irradiance_);
     device.launch_singly("patches: draw", draw, tiles);
-    for (const kernel::PatchRunData& run : device.read(reports_, 0, n_runs)) reaches_behind |= run.behind != 0;
+    for (const kernel::PatchRunData& run : device.read(reports_, 0, n_runs)) has_room &= run.too_many == 0;
   }
-  return !reaches_behind;
+  return has_room;
 }
 
 void PatchView::give_up() {

@@ -1,0 +1,128 @@
+// Caustics drawn as patches, in pictures: against the ball's irradiance by quadrature, and against what is gathered.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/statistics.hpp"
+#include "verify/caustic_plate.hpp"
+
+namespace vitrum {
+namespace {
+
+RenderResult caustics_of(Scene scene, uint64_t photons, int samples, PhotonEstimate estimate, Device& device) {
+  scene.photons.estimate = estimate;
+  scene.photons.count = photons;
+  scene.photons.radius = 0.01;
+  scene.render.samples = samples;
+  RenderOptions options;
+  options.views = {View::caustics};
+  return render(scene, device, options);
+}
+
+/// A lamp over a ball of glass and a mirror ball, in a corner of floor and wall with a step in it.
+Scene corner(const glm::dvec3& eye, const glm::dvec3& look_at) {
+  Scene scene;
+  scene.camera = {CameraType::pinhole, eye, look_at, {0, 1, 0}, 60};
+  scene.film.width = 96;
+  scene.film.height = 64;
+  scene.materials = {glass(1.5), surface(Surface::mirror), surface(Surface::opaque, 0.5), surface(Surface::opaque, 0.7)};
+  add(scene, Sphere{{0, 0.6, 0}, 0.3}, 0);
+  add(scene, Sphere{{0.9, 0.4, 0}, 0.25}, 1);
+  add(scene, Plane{{0, 0, 0}, {0, 1, 0}, {}, {}}, 2);
+  add(scene, Plane{{0, 0, -1}, {0, 0, 1}, {}, {}}, 3);
+  add(scene, box({-0.4f, 0.0f, -0.1f}, {0.05f, 0.1f, 0.4f}, 3), 3);
+  scene.lights.push_back({"lamp", {}, PointLight{{0.2, 1.6, 0.1}, Spectrum(1.0)}});
+  scene.photons.max_depth = 8;
+  return scene;
+}
+
+/// Means of radiance over squares of 8 x 8 pixels.
+std::vector<double> blocks(const RenderResult& result) {
+  const std::vector<double> radiance = result.film.mean("caustics");
+  std::vector<double> means(96 / 8 * 64 / 8, 0.0);
+  for (size_t i = 0; i < radiance.size(); i += 3) means[i / 3 / 96 / 8 * 12 + i / 3 % 96 / 8] += radiance[i] / 64;
+  return means;
+}
+
+/// Differences of such means over what is gathered, both summed over all squares but the few brightest, which hold a focus that
+/// gathering blurs.
+double difference(const std::vector<double>& drawn, const std::vector<double>& gathered) {
+  std::vector<double> sorted = gathered;
+  std::sort(sorted.begin(), sorted.end());
+  const double most = 4 * sorted[sorted.size() / 2];
+  double off = 0, sum = 0;
+  for (size_t i = 0; i < drawn.size(); ++i) {
+    if (gathered[i] > most) continue;
+    off += std::abs(drawn[i] - gathered[i]);
+    sum += gathered[i];
+  }
+  return off / sum;
+}
+
+}  // namespace
+
+TEST_CASE("patches: the error of the ball's caustic, exact and as a mesh, falls with the photons to the power of -.6 at least") {
+  Device device;
+  for (const bool mesh : {false, true}) {
+    CAPTURE(mesh);
+    const CausticPlate plate = mesh ? CausticPlate(180) : CausticPlate();
+    std::vector<double> errors;
+    for (const uint64_t photons : {1u << 12, 1u << 14, 1u << 16, 1u << 18}) {
+      const RenderResult result = caustics_of(plate.scene, photons, 1, PhotonEstimate::footprints, device);
+      errors.push_back(plate.error(result));
+      // All that is lit is drawn, and the map stays empty.
+      CHECK(result.rays.gathered == 0);
+      double found = 0, truth = 0;
+      const std::vector<double> irradiance = CausticPlate::irradiance(result);
+      for (size_t i = 0; i < irradiance.size(); ++i) found += irradiance[i], truth += plate.truth()[i];
+      MESSAGE(photons << " photons: error " << errors.back() << ", flux " << found / truth);
+      CHECK(std::abs(found / truth - 1) < 0.25 / std::sqrt(static_cast<double>(photons)));
+    }
+    CHECK(errors[0] < 0.14);
+    CHECK(errors[1] < 0.06);
+    CHECK(errors[2] < (mesh ? 0.05 : 0.025));
+    if (!mesh) CHECK(std::log(errors[3] / errors[0]) / std::log(64.0) < -0.6);
+  }
+}
+
+TEST_CASE("patches: floor, wall and step each take their own light, as those do who gather it") {
+  Device device;
+  const Scene scene = corner({0.9, 1.1, 2.2}, {0.15, 0.2, 0});
+  const std::vector<double> gathered = blocks(caustics_of(scene, 4'000'000, 16, PhotonEstimate::fixed_radius, device));
+  const RenderResult patches = caustics_of(scene, 100'000, 16, PhotonEstimate::footprints, device);
+  const double off = difference(blocks(patches), gathered);
+  MESSAGE("squares of pixels differ by " << off);
+  // Where patches are torn, at edges of the step and of shadows, they are right only as they get small.
+  CHECK(off < 0.06);
+  // Balls and edges are not drawn: they gather.
+  CHECK(patches.rays.gathered > 0);
+}
+
+TEST_CASE("patches: those that reach from the view behind the eye are cut") {
+  Device device;
+  // The eye is just above the floor, in the midst of the light that the mirror ball scatters.
+  const Scene scene = corner({0.4, 0.02, 0.8}, {0.4, 0.0, -1});
+  const std::vector<double> gathered = blocks(caustics_of(scene, 4'000'000, 16, PhotonEstimate::fixed_radius, device));
+  const double off = difference(blocks(caustics_of(scene, 100'000, 16, PhotonEstimate::footprints, device)), gathered);
+  MESSAGE("squares of pixels differ by " << off);
+  CHECK(off < 0.13);
+}
+
+TEST_CASE("patches: what a pane that does nothing hides is gathered, and is the same") {
+  Device device;
+  CausticPlate plate;
+  Scene behind = plate.scene;
+  behind.materials.push_back(glass(1.0));
+  add(behind, box({-0.03f, 0.165f, -0.03f}, {0.03f, 0.175f, 0.03f}, 2));  // right before the eye
+  const RenderResult drawn = caustics_of(plate.scene, 65536, 64, PhotonEstimate::footprints, device);
+  const RenderResult gathered = caustics_of(behind, 65536, 64, PhotonEstimate::footprints, device);
+  MESSAGE("errors " << plate.error(drawn) << " drawn, " << plate.error(gathered) << " gathered");
+  CHECK(drawn.rays.gathered == 0);
+  CHECK(gathered.rays.gathered > 0);
+  CHECK(plate.error(gathered) < 0.06);
+  CHECK(plate.error(drawn) < 0.6 * plate.error(gathered));
+}
+
+}  // namespace vitrum
