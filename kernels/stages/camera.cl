@@ -128,33 +128,30 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, 
                                                &shadow_rays));
 #endif
 #if CAUSTICS != CAUSTICS_NONE
-      Mask receives = camera.active & (max_channel(shading.scattering.diffuse) > 0.0f);
+      const Mask receives = camera.active & (max_channel(shading.scattering.diffuse) > 0.0f);
+      Mask gathers = map.count > 0 ? receives & within_reach(&map, surface.position) : (Mask)0;
+      Mask lit = gathers;
+      Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
       if (camera.depth == 0) {
         const Vec3 outward = surface.geometric_normal;
-        const Mask drawn =
-            receives & is_on(&shown, surface.position, select3(surface.entering, outward, negate3(outward)));
-        const Vec3 irradiance = irradiance_shown(view, column, row, camera.x, camera.y);
-        const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));
-        radiance = select3(drawn, add3(radiance, caustic), radiance);
-        caustics = select3(drawn, add3(caustics, caustic), caustics);
-        receives &= drawn == 0;
+        const Vec3 normal = select3(surface.entering, outward, negate3(outward));
+        const Mask drawn = receives & is_on(&shown, surface.position, normal);
+        irradiance = select3(drawn, irradiance_shown(view, column, row, camera.x, camera.y), irradiance);
+        lit |= drawn;
+        gathers &= drawn == 0;
       }
 #endif
-      receives &= within_reach(&map, surface.position);
-      if (map.count > 0 && ANY(receives)) {
-        Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
-        FOR_LANES(lane, receives) {
-          uint photons;
-          set_lane3(&irradiance, lane, gathered_irradiance(&map, LANE3(surface.position, lane),
-                                                           LANE3(shading.scattering.normal, lane), &photons));
-          gathered += photons;
-          pairs += photons * (photons - (ulong)1);
-        }
-        const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));
-        radiance = select3(receives, add3(radiance, caustic), radiance);
-        caustics = select3(receives, add3(caustics, caustic), caustics);
+      FOR_LANES(lane, gathers) {
+        uint photons;
+        set_lane3(&irradiance, lane, gathered_irradiance(&map, LANE3(surface.position, lane),
+                                                         LANE3(shading.scattering.normal, lane), &photons));
+        gathered += photons;
+        pairs += photons * (photons - (ulong)1);
       }
+      const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));
+      radiance = select3(lit, add3(radiance, caustic), radiance);
+      caustics = select3(lit, add3(caustics, caustic), caustics);
 #endif
       beauty = select3(camera.active, add3(beauty, radiance), beauty);
       cut = camera.active ? cut + shading.cut : cut;

@@ -17,7 +17,7 @@ struct Case {
   Scene scene;
   std::function<double(const RenderResult&)> error;
   PictureLayer truth;
-  uint64_t worth = 1;  ///< photons with a radius that one of its photons makes up for: samples go by them
+  bool draws = false;  ///< what its photons light is drawn by area: one sample shows it
 };
 
 /// The caustic is finer than pixels, which shows once there are many photons.
@@ -33,8 +33,7 @@ std::vector<Case> plates(bool quick) {
   const auto add_footprints = [&](const char* name, const CausticPlate& plate) {
     add_case(name, plate);
     cases.back().scene.photons.estimate = PhotonEstimate::footprints;
-    cases.back().scene.render.adaptive = true;
-    cases.back().worth = 12;
+    cases.back().draws = true;
   };
   const CausticPlate exact;
   add_case("exact ball", exact);
@@ -81,7 +80,7 @@ BenchResult bench_photons(const BenchContext& context) {
     for (uint64_t count = least; count <= most; count *= 4) {
       Scene scene = c.scene;
       scene.photons.count = count;
-      scene.render.samples = samples_for(c.worth * count);
+      scene.render.samples = c.draws ? 1 : samples_for(count);
       const RenderResult r = timed_render(context, scene, View::caustics);
       const double photons = static_cast<double>(count), error = c.error(r);
       const double photon_seconds = r.cpu_seconds.at("photon"), seconds = compute_seconds(r);

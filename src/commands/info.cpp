@@ -99,8 +99,8 @@ void run_info(const SceneArguments& arguments) {
   std::printf(", film %.3f MiB", pixels * FILM_PLANES * sizeof(float) / 0x1p20);
   if (features.caustics) {
     // Of one pass: as stored and in rows of the sort; or in a tree, with a node to seven leaves or nodes of eight photons. With
-    // footprints, room for as many that branch off, and about six entries each.
-    const double floats = features.footprints ? (2.0 + 6.0) * FOOTPRINT_ROW
+    // footprints, room for twice as many that branch off, what neighbours tell each other, and about six entries each.
+    const double floats = features.footprints ? (3.0 + 6.0) * FOOTPRINT_ROW + 1.5 * LANDING_ROW
                                               : PHOTON_ROW + (features.nearest_photons ? PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0
                                                                                        : double{PHOTON_ROW});
     double photons = by_rounds ? static_cast<double>(photons_in_memory)

@@ -275,7 +275,7 @@ PhotonPass::PhotonPass(const KernelContext& context) : state_(new State(context)
 PhotonPass::~PhotonPass() = default;
 
 uint64_t PhotonPass::capacity(const Device& device, const Features& features) {
-  constexpr uint64_t waiting = 2 * 2 * FOOTPRINT_ROW * sizeof(float);  // of a photon and what branches off, with some to spare
+  constexpr uint64_t waiting = 4 * FOOTPRINT_ROW * sizeof(float);  // of a photon and what branches off, with some to spare
   if (features.footprints) return std::min(uint64_t{device.info().max_allocation} / waiting, most_footprints);
   // A photon takes a row of one array, with some to spare; half of the memory may go to it. Offsets in it fit 32 bits.
   constexpr double row = largest_row_share * PHOTON_ROW * sizeof(float);

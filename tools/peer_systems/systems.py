@@ -200,7 +200,7 @@ class Vitrum(System):
         if case == "mesh":
             path = self.mesh("ball.obj", mesh_ball.write_obj)
             mesh = ["--set", f'shape.ball={{type = "mesh", file = "{path}", material = "glass"}}']
-        samples = min(max(line.samples_worth * amount >> 14, 4), 1024) if amount > line.little else 1
+        samples = line.samples or (min(max(amount >> 14, 4), 1024) if amount > line.little else 1)
         whole = self.measured([self.program, "render", ROOT / "models/caustic_plate/scene.toml", "--quiet",
                                "-o", picture, "--report", report, "--photons", amount, "--samples", samples,
                                *line.options, *mesh])
@@ -213,7 +213,7 @@ class Vitrum(System):
 @dataclass(frozen=True)
 class VitrumLine(Line):
     per_pixel: bool = False
-    samples_worth: int = 1      # samples a pixel grow with so many times the photons; 256 would leave an error of .016
+    samples: int = 0            # of a pixel; 0: they grow with the photons; 256 would leave an error of .016
 
 
 def photons(most):
@@ -228,11 +228,10 @@ def all_systems(folder, scratch, program):
         return system
 
     return [in_folder(system) for system in (
-        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, with footprints `render.adaptive`, the rest by default; samples "
-               "a pixel grow with the photons as in `vitrum bench photons`, but to 1,024.",
+        Vitrum("vitrum", "vitrum", "`photons.estimate` as named, the rest by default. With footprints one sample a pixel, which shows "
+               "the mean over it; else samples grow with the photons as in `vitrum bench photons`, but to 1,024.",
                (VitrumLine("footprints", {"ball": photons(10), "mesh": photons(10)},
-                           ("--set", "photons.estimate=footprints", "--set", "render.adaptive=true"),
-                           samples_worth=12),
+                           ("--set", "photons.estimate=footprints"), samples=1),
                 VitrumLine("automatic radius", {"ball": photons(12), "mesh": photons(11)},
                            ("--set", "photons.estimate=automatic"))),
                ("mesh_ball.py",), program=program),
