@@ -81,6 +81,8 @@ typedef struct {
 } Footprint;
 
 #define FOOTPRINT_MOST_PARTS 8.0f
+// Sides beyond so many times `largest` are cut off: two parts of the highest level.
+#define FOOTPRINT_MOST_SIDE 128.0f
 
 // Into how many parts no larger than `largest` a side of this length is cut.
 FUNCTION Float parts_of(const Float side, const float largest) {
@@ -139,14 +141,13 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   Float d = found ? dot3(v, frame.y) : alone;
 
   // Where light is focussed, a footprint shrinks to nothing, which a pixel's samples would miss or catch by chance. So its
-  // axes (singular values q + r and q - r) are at least what lies between samples. What goes beyond the largest side by more
-  // than the parts' number is cut off.
+  // axes (singular values q + r and q - r) are at least what lies between samples, and at most what few parts reach over.
   const Float x = place.x - limits.eye[0];
   const Float y = place.y - limits.eye[1];
   const Float z = place.z - limits.eye[2];
   const Float sample = limits.sharpness * sqrt(fma(x, x, fma(y, y, z * z)));
   const Float least = larger(smaller(sample, (Float)limits.largest), (Float)(1e-3f * limits.largest));
-  const Float most = FOOTPRINT_MOST_PARTS * LEVEL_RATIO * limits.largest;
+  const Float most = FOOTPRINT_MOST_SIDE * limits.largest;
   const Float half_sum = 0.5f * (a + d);
   const Float half_difference = 0.5f * (a - d);
   const Float half_turn = 0.5f * (c - b);
@@ -180,10 +181,13 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   const Float length_v = sqrt(fma(b, b, d * d));
   Float parts_u = parts_of(length_u, limits.largest);
   Float parts_v = parts_of(length_v, limits.largest);
-  const Mask is_large = parts_u * parts_v > FOOTPRINT_MOST_PARTS;
-  parts_u = is_large ? parts_of(length_u, LEVEL_RATIO * limits.largest) : parts_u;
-  parts_v = is_large ? parts_of(length_v, LEVEL_RATIO * limits.largest) : parts_v;
-  f.level = is_large ? (Uint)1 : (Uint)0;
+  f.level = 0;
+  for (uint level = 1; level < LEVELS; ++level) {
+    const Mask is_large = parts_u * parts_v > FOOTPRINT_MOST_PARTS;
+    parts_u = is_large ? parts_of(length_u, level_scale(level) * limits.largest) : parts_u;
+    parts_v = is_large ? parts_of(length_v, level_scale(level) * limits.largest) : parts_v;
+    f.level = is_large ? (Uint)level : f.level;
+  }
   f.across_u = scale3(parts_u / determinant, add3(scale3(d, frame.x), scale3(-b, frame.y)));
   f.across_v = scale3(parts_v / determinant, add3(scale3(-c, frame.x), scale3(a, frame.y)));
   f.parts_u = AS_UINT(TO_INT(parts_u));

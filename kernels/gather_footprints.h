@@ -8,7 +8,7 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
   const GridData grid = map->grid;
   const float max_off_plane = FOOTPRINT_OFF_PLANE * map->radius;
   const float area = map->radius * map->radius;  // so that no square overflows
-  const float inverse_cell = level ? grid.inverse_cell / LEVEL_RATIO : grid.inverse_cell;
+  const float inverse_cell = grid.inverse_cell / level_scale(level);
   const uint cell = cell_of_level(grid, level, cell_coordinate(p.x, inverse_cell), cell_coordinate(p.y, inverse_cell),
                                   cell_coordinate(p.z, inverse_cell));
   const uint bucket = cell >> grid.bucket_shift;
@@ -40,7 +40,8 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
     const float8 z = area * (ux * vy - uy * vx);
     const float8 height = dx * x + dy * y + dz * z;
     const uint8 packed = as_uint8(vload8(0, entries + PHOTON_DIRECTION * stride + i));
-    counts &= ((packed >> LEVEL_SHIFT & 1u) == level) & came_to_front(as_int8(packed), n) &
+    const uint8 flags = as_uint8(vload8(0, entries + FOOTPRINT_FLAGS * stride + i));
+    counts &= ((flags & ~IN_OTHER_CELL) == level) & came_to_front(as_int8(packed), n) &
               (distance_off_plane(dx, dy, dz, n) <= max_off_plane) &
               (height * height <= max_off_plane * max_off_plane * (x * x + y * y + z * z));
     add_weighted(entries, stride, i, counts, tent_u * tent_v, sums);
@@ -50,7 +51,7 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
 // Irradiance [W/m2] at p on the side of the unit normal n, and the number of `photons` that it is made of.
 FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, uint* photons) {
   Sums sums = no_sums();
-  for (uint level = 0; level < 2; ++level) add_cell(map, p, n, level, &sums);
+  for (uint level = 0; level < LEVELS; ++level) add_cell(map, p, n, level, &sums);
   *photons = photons_in(&sums);
   return total_power(&sums);
 }

@@ -35,7 +35,8 @@
 // With footprints, in the map:
 #define FOOTPRINT_U 7          // 3 floats [1/m]: across the parallelogram's first side, from -1 to 1 where the tent ends
 #define FOOTPRINT_V 10         // 3 floats [1/m]: and its second
-#define FOOTPRINT_FIELDS 13
+#define FOOTPRINT_FLAGS 13     // uint: level, and IN_OTHER_CELL
+#define FOOTPRINT_FIELDS 14
 #define FOOTPRINT_CELL 15
 #define FOOTPRINT_ROW 16
 // and in a run:
@@ -62,11 +63,12 @@
 #endif
 #endif
 
-// Large footprints, level 1, are listed by cells so many times larger. They share the grid with the small ones' cells, half
-// of it away from those of the same place, where there is less of a crowd; the highest bits of an entry's direction tell
-// them apart, and the entry of the cell about its own middle from its others.
+// Footprints that are large are listed by larger cells, level by level, so that few cells list each. All levels share the grid,
+// the cells of a place a quarter of it away from those of the level below, where there is less of a crowd; an entry's flags
+// tell which level it is of, and the entry of the cell about its own middle from its others.
+#define LEVELS 4u
 #define LEVEL_RATIO 4.0f
-#define LEVEL_SHIFT 30u
+FUNCTION float level_scale(uint level) { return (float)(1u << 2u * level); }
 #define IN_OTHER_CELL 0x80000000u
 
 #define BUCKET_UNIT 16u        // floats
@@ -151,8 +153,8 @@ FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
 }
 
 FUNCTION uint cell_of_level(const GridData grid, uint level, int ix, int iy, int iz) {
-  const uint x = ((uint)ix + (level << grid.log2_x >> 1)) & ((1u << grid.log2_x) - 1u);
-  return row_of_cells(grid, iy + (int)(level << grid.log2_y >> 1), iz + (int)(level << grid.log2_z >> 1)) | x;
+  const uint x = ((uint)ix + (level << grid.log2_x >> 2)) & ((1u << grid.log2_x) - 1u);
+  return row_of_cells(grid, iy + (int)(level << grid.log2_y >> 2), iz + (int)(level << grid.log2_z >> 2)) | x;
 }
 
 FUNCTION Uint cells_of(const GridData grid, const Vec3 p) {

@@ -248,7 +248,7 @@ BODY project_run(__global const CameraData* camera, const float detail, const ui
           const Mask nearer_ahead = ahead.joined & ((back.joined == 0) | (forward2 < backward2));
           const Vec3 step = select3(nearer_ahead, forward, backward);
           const Float length = sqrt(nearer_ahead ? forward2 : backward2);
-          const Float most = FOOTPRINT_MOST_PARTS * LEVEL_RATIO * limits.largest;
+          const Float most = FOOTPRINT_MOST_SIDE * limits.largest;
           along[axis] = scale3(length > most ? most / length : (Float)1.0f, step);
         }
         // Half way to what is torn off, all the way to the lattice's border.

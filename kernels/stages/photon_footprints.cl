@@ -39,8 +39,8 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
       const float off_plane = FOOTPRINT_OFF_PLANE * 2.0f * limits.largest;
       const float3 reach = fabs(side_u) + fabs(side_v) + off_plane * fabs(LANE3(normal, lane));
       const uint level = LANE(f.level, uint, lane);
-      const float inverse_cell = level ? grid.inverse_cell / LEVEL_RATIO : grid.inverse_cell;
-      const uint direction = as_uint(photon[PHOTON_DIRECTION * stride + lane]) | level << LEVEL_SHIFT;
+      const float inverse_cell = grid.inverse_cell / level_scale(level);
+      const float direction = photon[PHOTON_DIRECTION * stride + lane];
       for (uint part = 0; part < parts_u * parts_v; ++part) {
         // From the middle of the footprint, in sides of parts.
         const float i = (float)(part / parts_v) - 0.5f * (float)(parts_u - 1u);
@@ -70,10 +70,11 @@ BODY spread_run(const uint stored, const uint run_length, __global const float* 
               if (!rows) continue;
               __global float* row = rows + (ulong)FOOTPRINT_ROW * place_of_row;
               vstore3(middle, 0, row + PHOTON_X);
-              row[PHOTON_DIRECTION] = as_float(cell == own_cell ? direction : direction | IN_OTHER_CELL);
+              row[PHOTON_DIRECTION] = direction;
               vstore3(power, 0, row + PHOTON_POWER);
               vstore3(across_u, 0, row + FOOTPRINT_U);
               vstore3(across_v, 0, row + FOOTPRINT_V);
+              row[FOOTPRINT_FLAGS] = as_float(cell == own_cell ? level : level | IN_OTHER_CELL);
               row[FOOTPRINT_CELL] = as_float(cell);
             }
       }

@@ -308,7 +308,7 @@ std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map) {
       cl_float8 photon{};
       for (size_t field = 0; field < PHOTON_FIELDS; ++field) photon.s[field] = fields[field * stride + i];
       if (map.fields == FOOTPRINT_FIELDS) {
-        if (std::bit_cast<uint32_t>(photon.s[PHOTON_DIRECTION]) & IN_OTHER_CELL) continue;
+        if (std::bit_cast<uint32_t>(fields[FOOTPRINT_FLAGS * stride + i]) & IN_OTHER_CELL) continue;
         const auto vector = [&](size_t field) {
           return glm::vec3(fields[field * stride + i], fields[(field + 1) * stride + i], fields[(field + 2) * stride + i]);
         };

@@ -111,11 +111,13 @@ void check(const std::vector<Landing>& landings, const kernel::FootprintLimits& 
       const auto parts = [&](int k, double most) {
         return std::max(std::ceil(glm::length(truth[k]) / most - 0.001), 1.0);
       };
-      const bool is_large = parts(0, largest) * parts(1, largest) > 8;
-      const double most = is_large ? 4 * largest : largest, parts_u = parts(0, most), parts_v = parts(1, most);
+      uint32_t level = 0;
+      double most = largest;
+      for (; level + 1 < LEVELS && parts(0, most) * parts(1, most) > 8; ++level) most *= 4;
+      const double parts_u = parts(0, most), parts_v = parts(1, most);
       apart(field(13), parts_u, 1);
       apart(field(14), parts_v, 1);
-      apart(field(15), is_large, 1);
+      apart(field(15), level, 1);
       // From the middle of a part to that of the next, its tent falls to 0.
       const double aspect = longest * longest / area;
       apart(glm::dot(across_u, u), parts_u, parts_u * aspect);
@@ -149,7 +151,7 @@ bool at_edge(uint32_t column, uint32_t row) {
 
 TEST_CASE("footprints: where an affine map carries the lattice, their sides are its matrix") {
   for (const dmat2& m : {dmat2(0.03, 0, 0, 0.02), dmat2(0.02, 0.05, 0.04, -0.01), dmat2(-0.06, 0.03, 0.03, 0.02)})
-    for (const float largest : {0.1f, 0.023f, 0.005f}) {  // whole, cut, cut and of the second level
+    for (const float largest : {0.1f, 0.023f, 0.005f, 0.001f}) {  // whole, cut, cut and of higher levels
       const auto at = [&](uint32_t c, uint32_t r) { return Landing{m * dvec2(c, r)}; };
       check(landed(at), limits_of(largest), {[&](uint32_t, uint32_t) { return m; }});
     }
@@ -224,8 +226,8 @@ TEST_CASE("footprints: their axes have a least and a largest length, and at an e
                {0.002, 0.001, 0.1f, 1.0f},     // but not beyond the largest
                {0.05, 0.00001, 0.1f, 0.0f},    // an eye close by: a thousandth of the largest
                {0.05, 0.002, 0.1f, 0.0f},      // at an edge, an eighth of the long one
-               {0.2, 0.03, 0.002f, 0.0f},      // the long one is cut,
-               {0.2, -0.1, 0.002f, 0.0f}};     // both are
+               {0.2, 0.03, 0.0005f, 0.0f},     // the long one is cut,
+               {0.2, -0.1, 0.0005f, 0.0f}};    // both are
   for (const auto& c : cases)
     // By the last angle, the last point of a column lies about where the first of the next does.
     for (const double other_turn : {0.4, 2.0, -std::atan(1.0 / (rows - 1))}) {
@@ -239,9 +241,9 @@ TEST_CASE("footprints: their axes have a least and a largest length, and at an e
         const double distance = glm::distance(in_space(m * dvec2(column, row)), dvec3(0, 0, 3));
         const double sample = static_cast<double>(c.sharpness) * distance;
         const double least = std::max(std::min(sample, largest), 0.001 * largest);
-        const double first = std::max(std::min(c.first, 32 * largest), least);
+        const double first = std::max(std::min(c.first, 128 * largest), least);
         const double least_second = at_edge(column, row) ? std::max(least, first / 8) : least;
-        const double second = std::max(std::min(std::abs(c.second), 32 * largest), least_second);
+        const double second = std::max(std::min(std::abs(c.second), 128 * largest), least_second);
         return with_axes(0.7, first, c.second < 0 ? -second : second, other_turn);
       };
       check(landed([&](uint32_t column, uint32_t row) { return Landing{m * dvec2(column, row)}; }), limits, {sides});
@@ -277,9 +279,10 @@ std::vector<Entry> entries_of(Device& device, const PhotonMap& map) {
           return dvec3(glm::vec3(x[0], x[stride], x[2 * stride]));
         };
         const auto bits = std::bit_cast<int32_t>(fields[PHOTON_DIRECTION * stride + i]);
+        const auto flags = std::bit_cast<uint32_t>(fields[FOOTPRINT_FLAGS * stride + i]);
         entries.push_back({vector(PHOTON_X), vector(PHOTON_POWER), {vector(FOOTPRINT_U), vector(FOOTPRINT_V)},
                            {bits << 22 >> 22, bits << 12 >> 22, bits << 2 >> 22}, cell,
-                           static_cast<uint32_t>(bits) >> LEVEL_SHIFT & 1u, bits >= 0});
+                           flags & ~IN_OTHER_CELL, (flags & IN_OTHER_CELL) == 0});
       }
   }
   return entries;
@@ -303,8 +306,8 @@ TEST_CASE("footprints: what is gathered is the sum over all that cover a place, 
   const std::vector<Entry> entries = entries_of(device, map);
   REQUIRE(entries.size() == map.count);
 
-  // What this is about: cells that list footprints of both levels.
-  std::set<uint32_t> cells[2];
+  // What this is about: cells that list footprints of more than one level.
+  std::set<uint32_t> cells[LEVELS];
   for (const Entry& entry : entries) cells[entry.level].insert(entry.cell);
   CHECK(std::count_if(cells[0].begin(), cells[0].end(), [&](uint32_t cell) { return cells[1].contains(cell); }) > 50);
 

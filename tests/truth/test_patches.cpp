@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "film/statistics.hpp"
 #include "verify/caustic_plate.hpp"
@@ -123,6 +124,40 @@ TEST_CASE("patches: what a pane that does nothing hides is gathered, and is the 
   CHECK(gathered.rays.gathered > 0);
   CHECK(plate.error(gathered) < 0.06);
   CHECK(plate.error(drawn) < 0.6 * plate.error(gathered));
+}
+
+TEST_CASE("patches: a texture is multiplied by the light of its own part of a pixel") {
+  Device device;
+  CausticPlate plate;
+  // Pixels of 25 mm, across whose upper half the plate is white, and black across the lower.
+  constexpr int size = 16, finer = 128 / size;
+  plate.scene.film.width = plate.scene.film.height = size;
+  plate.scene.textures.resize(1);
+  plate.scene.textures[0].filter = TextureFilter::nearest;
+  plate.scene.textures[0].width = 1;
+  plate.scene.textures[0].height = 2;
+  plate.scene.textures[0].texels = {glm::vec3(1), glm::vec3(0)};
+  plate.scene.materials[1].diffuse = Spectrum(1.0);
+  plate.scene.materials[1].diffuse_texture = 0;
+  const double pixel = 2 * CausticPlate::half_width / size;
+  std::get<Plane>(plate.scene.shapes[1].geometry).texture_u = {1, 0, 0};
+  std::get<Plane>(plate.scene.shapes[1].geometry).texture_v = {0, 0, 1 / pixel};
+  const RenderResult result = caustics_of(plate.scene, 65536, 256, PhotonEstimate::footprints, device);
+  CHECK(result.rays.gathered == 0);
+  const std::vector<double> radiance = result.film.mean("caustics");
+  double squares = 0, sum = 0;
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      double truth = 0;
+      for (int y = 0; y < finer / 2; ++y)
+        for (int x = 0; x < finer; ++x) truth += plate.truth()[(row * finer + y) * 128 + column * finer + x] / (finer * finer);
+      const double found = radiance[3 * (row * size + column)] * std::numbers::pi;
+      squares += (found - truth) * (found - truth);
+      sum += truth;
+    }
+  const double error = std::sqrt(squares) * size / sum;
+  MESSAGE("error " << error);
+  CHECK(error < 0.05);
 }
 
 }  // namespace vitrum
