@@ -280,7 +280,7 @@ BODY project_run(__global const CameraData* camera, const float detail, const ui
     if (ANY(alone)) {
       const Seen seen = seen_at(camera, place);
       const Float apart = on_lattice ? larger(spacing, (Float)LEVEL_RATIO) : spacing;
-      const Float side = limits.largest * smaller(apart, (Float)FOOTPRINT_MOST_PARTS) / seen.depth;
+      const Float side = limits.largest * smaller(apart, (Float)FOOTPRINT_MOST_APART) / seen.depth;
       const Frame frame = frame_around(normal);
       const Vec3 d = scale3(1.0f / seen.depth, subtract3(place, uniform3(camera->eye)));
       const Vec3 across = along3(uniform3(camera->right), -dot3(d, uniform3(camera->right)), uniform3(camera->forward));

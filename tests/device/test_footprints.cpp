@@ -113,7 +113,7 @@ void check(const std::vector<Landing>& landings, const kernel::FootprintLimits& 
       };
       uint32_t level = 0;
       double most = largest;
-      for (; level + 1 < LEVELS && parts(0, most) * parts(1, most) > 8; ++level) most *= 4;
+      for (; level + 1 < LEVELS && parts(0, most) * parts(1, most) > 4; ++level) most *= 4;
       const double parts_u = parts(0, most), parts_v = parts(1, most);
       apart(field(13), parts_u, 1);
       apart(field(14), parts_v, 1);
