@@ -88,7 +88,8 @@ std::string rounds_text(const RenderResult& result) {
 
 void run_render(const RenderArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  start_image_process();
+  // Else textures start it, if there are any.
+  if (std::any_of(arguments.outputs.begin(), arguments.outputs.end(), takes_image_process)) start_image_process();
   set_quiet(arguments.quiet);
   RenderOptions options;
   options.start = start;

@@ -10,12 +10,14 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 #include <new>
 #include <string_view>
 
 #include "core/version.hpp"
 #include "core/whole_file.hpp"
+#include "film/exr_file.hpp"
 #include "film/image_process.hpp"
 
 namespace vitrum {
@@ -177,6 +179,8 @@ LayeredPicture read_layers(const std::string& path, const SourceLocation& asked_
   return in_layers(decoded<PictureChannels>(path, asked_by));
 }
 
+bool takes_image_process(const std::string& path) { return !format_of(path).takes_layers; }
+
 void check_writable(const std::string& path) {
   format_of(path);
   check_whole_file(path);
@@ -191,6 +195,15 @@ std::string picture_file(const std::string& path, int width, int height, const s
   }
   const Format format = format_of(path);
   const Channels channels = file_channels(format, layers, display, pixels);
+  if (format.takes_layers) {
+    std::map<std::string, std::string> header{{"Software", std::string("vitrum ") + version()}};
+    for (const auto& [key, value] : metadata) header["vitrum:" + key] = value;
+    try {
+      return exr_file(width, height, channels.names, channels.values, header);
+    } catch (const std::exception& error) {
+      throw Error({path}, std::string("the picture cannot be encoded: ") + error.what(), "choose another format, or free memory");
+    }
+  }
 
   std::string texts;
   append_text(texts, format.extension);

@@ -66,6 +66,9 @@ std::string picture_file(const std::string& path, int width, int height, const s
 void write_picture(const std::string& path, int width, int height, const std::vector<PictureLayer>& layers,
                    const DisplaySettings& display, const std::map<std::string, std::string>& metadata);
 
+/// Whether write_picture needs the process for pictures. Throws Error at {path} if it would refuse the name.
+bool takes_image_process(const std::string& path);
+
 /// Starts the process for pictures, so that a later call finds it ready; does not wait for that. It ends with the
 /// program. Throws Error without a place if it cannot be started.
 void start_image_process();

@@ -92,13 +92,13 @@ Outcome decode_file(const std::string& path, const DecodeRequest& request, const
   return {};
 }
 
-/// Puts the metadata where the format keeps it: EXR and PNG have named texts, the others one description.
+/// Puts the metadata where the format keeps it: PNG has named texts, the others one description.
 void add_metadata(const std::string& extension, std::span<const std::string> keys_and_values, OIIO::ImageSpec& spec) {
   std::string description;
   for (size_t i = 0; i + 1 < keys_and_values.size(); i += 2) {
     const std::string& key = keys_and_values[i];
     const std::string& value = keys_and_values[i + 1];
-    if (extension == "exr" || extension == "png") {
+    if (extension == "png") {
       spec.attribute("vitrum:" + key, value);
     } else {
       description += (description.empty() ? "" : "; ") + key + "=" + value;
@@ -120,8 +120,8 @@ Outcome encode_file(const EncodeRequest& request, const std::vector<std::string>
   const auto names = texts.begin() + 2, metadata = names + request.channels;
   spec.channelnames.assign(names, metadata);
   add_metadata(extension, {metadata, texts.end()}, spec);
-  const bool is_exr = extension == "exr", is_tiff = extension == "tif" || extension == "tiff";
-  if (is_exr || is_tiff) {
+  const bool is_tiff = extension == "tif" || extension == "tiff";
+  if (is_tiff) {
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", "");  // else the time of day is written, and no two files are the same
   }
