@@ -186,6 +186,25 @@ FUNCTION void pack_lanes(const Mask which, const Float value, __global float* to
 // The lanes that hold one of `count` entries.
 FUNCTION Mask lanes_below(uint first, uint count) { return LANES + first < count; }
 
+// Two vectors side by side. For tools/check_races, number by number: oclgrind 21.10 falls over wide ones that are joined.
+#ifdef SIMULATED
+#define JOINING(half, whole)                                                            \
+  FUNCTION float##whole joined##half(const float##half low, const float##half high) {   \
+    float##whole v;                                                                     \
+    for (uint k = 0; k < half; ++k) {                                                   \
+      ((float*)&v)[k] = ((const float*)&low)[k];                                        \
+      ((float*)&v)[half + k] = ((const float*)&high)[k];                                \
+    }                                                                                   \
+    return v;                                                                           \
+  }
+#else
+#define JOINING(half, whole) \
+  FUNCTION float##whole joined##half(const float##half low, const float##half high) { return (float##whole)(low, high); }
+#endif
+JOINING(2, 4)
+JOINING(4, 8)
+JOINING(8, 16)
+
 // One lane of a Vec3.
 #define LANE3(v, lane) ((float3)(LANE((v).x, float, lane), LANE((v).y, float, lane), LANE((v).z, float, lane)))
 

@@ -113,7 +113,7 @@ BODY put_clipped(__global const CameraData* camera, const float detail, const fl
   for (uint k = 2; k < n; k += 2) {
     __global float* row = next_row(rows, values, lane);
     const float2 last = seen[min(k + 1, n - 1)];
-    vstore8((float8)(seen[0], seen[k - 1], seen[k], last), 0, row + PATCH_CORNER);
+    vstore8(joined4(joined2(seen[0], seen[k - 1]), joined2(seen[k], last)), 0, row + PATCH_CORNER);
     const float2 u = seen[k - 1] - seen[0];
     const float2 v = seen[k] - seen[0];
     const float2 w = last - seen[0];
@@ -314,10 +314,10 @@ BODY project_run(__global const CameraData* camera, const float detail, const ui
       __global const float* row = rows + PATCH_ROW * i;
       const float8 corners = vload8(0, row + PATCH_CORNER);
       const float4 own = row[PATCH_SCALE + 1] == PATCH_TENT
-                             ? (float4)(corners.s01 - corners.s23, corners.s01 + corners.s23)
-                             : (float4)(fmin(fmin(corners.s01, corners.s23), fmin(corners.s45, corners.s67)),
-                                        fmax(fmax(corners.s01, corners.s23), fmax(corners.s45, corners.s67)));
-      box = (float4)(fmin(box.lo, own.lo), fmax(box.hi, own.hi));
+                             ? joined2(corners.s01 - corners.s23, corners.s01 + corners.s23)
+                             : joined2(fmin(fmin(corners.s01, corners.s23), fmin(corners.s45, corners.s67)),
+                                       fmax(fmax(corners.s01, corners.s23), fmax(corners.s45, corners.s67)));
+      box = joined2(fmin(box.lo, own.lo), fmax(box.hi, own.hi));
     }
     vstore4(box, first / PATCH_BLOCK, boxes);
   }
@@ -422,7 +422,7 @@ FUNCTION void draw_line(const Tile tile, const float4 plane, const float3 power,
   float2 spot = floor(from);
   const float2 last = floor(from + along);
   const float2 step = (float2)(along.x < 0.0f ? -1.0f : 1.0f, along.y < 0.0f ? -1.0f : 1.0f);
-  const float2 size = 1.0f / fmax(fabs(along), 1e-9f);
+  const float2 size = 1.0f / fmax(fabs(along), (float2)(1e-9f));
   float2 next = (step * (spot - from) + (float2)(along.x < 0.0f ? 0.0f : 1.0f, along.y < 0.0f ? 0.0f : 1.0f)) * size;
   const uint borders = (uint)(fabs(last.x - spot.x) + fabs(last.y - spot.y));
   float done = 0.0f;
@@ -472,18 +472,18 @@ FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 p
   const float8 height = to_y - from_y;
   const float8 slope = height == 0.0f ? (float8)(0.0f) : (to_x - from_x) / height;
   const float2 size = (float2)((float)(tile.right - tile.left), (float)(tile.bottom - tile.top));
-  const float16 from_x2 = (float16)(from_x, from_x);
-  const float16 from_y2 = (float16)(from_y, from_y);
-  const float16 to_x2 = (float16)(to_x, to_x);
-  const float16 to_y2 = (float16)(to_y, to_y);
-  const float16 slope2 = (float16)(slope, slope);
+  const float16 from_x2 = joined8(from_x, from_x);
+  const float16 from_y2 = joined8(from_y, from_y);
+  const float16 to_x2 = joined8(to_x, to_x);
+  const float16 to_y2 = joined8(to_y, to_y);
+  const float16 slope2 = joined8(slope, slope);
   const float16 low_x = fmin(from_x2, to_x2);
   const float16 high_x = fmax(from_x2, to_x2);
-  const float16 density2 = (float16)(density, density);
+  const float16 density2 = joined8(density, density);
   const int end_row = (int)clamp(high.y - origin.y + 1.0f, 0.0f, size.y);
   // Two rows at a time, the second of which may be another tile's.
   for (int row = (int)clamp(low.y - origin.y, 0.0f, size.y); row < end_row; row += 2) {
-    const float16 above = (float)row + (float16)((float8)(0.0f), (float8)(1.0f));
+    const float16 above = (float)row + joined8((float8)(0.0f), (float8)(1.0f));
     const float16 start = clamp(from_y2, above, above + 1.0f);
     const float16 end = clamp(to_y2, above, above + 1.0f);
     const float16 x_start = clamp(from_x2 + (start - from_y2) * slope2, low_x, high_x);
@@ -491,7 +491,7 @@ FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 p
     const int16 passes = start != end;
     const float16 left = fmin(x_start, x_end);
     const float16 right = fmax(x_start, x_end);
-    const float16 inverse = 1.0f / fmax(right - left, 1e-9f);
+    const float16 inverse = 1.0f / fmax(right - left, (float16)(1e-9f));
     const float16 weight = density2 * (end - start);
     const float16 firsts = passes ? left : (float16)(INFINITY);
     const float16 lasts = passes ? -right : (float16)(INFINITY);
@@ -501,9 +501,9 @@ FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 p
       const float8 left_sides = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 0.0f, 1.0f, 2.0f, 3.0f) + (float)column;
       float8 share = 0.0f;
 #define ADD_EDGE(k, l)                                                                                                 \
-  share += (float8)((float4)(weight.k), (float4)(weight.l)) *                                                          \
-           share_left_of((float8)((float4)(left.k), (float4)(left.l)), (float8)((float4)(right.k), (float4)(right.l)), \
-                         (float8)((float4)(inverse.k), (float4)(inverse.l)), left_sides)
+  share += joined4((float4)(weight.k), (float4)(weight.l)) *                                                           \
+           share_left_of(joined4((float4)(left.k), (float4)(left.l)), joined4((float4)(right.k), (float4)(right.l)),   \
+                         joined4((float4)(inverse.k), (float4)(inverse.l)), left_sides)
       ADD_EDGE(s0, s8);
       ADD_EDGE(s1, s9);
       ADD_EDGE(s2, sa);

@@ -161,7 +161,8 @@ FUNCTION Mask are_numbers(const Photons* photons, const Vec3 arrived) {
 FUNCTION void note_landings(const Photons* photons, const Mask which, __global float* landings) {
   FOR_LANES(lane, which & (photons->point != NO_POINT)) {
     const float4 arrival = (float4)(LANE3(photons->origin, lane), as_float(LANE(photons->way, uint, lane)));
-    vstore8((float8)(arrival, LANE3(photons->power, lane), 0.0f), LANE(photons->point, uint, lane), landings);
+    const float4 brought = (float4)(LANE3(photons->power, lane), 0.0f);
+    vstore8(joined4(arrival, brought), LANE(photons->point, uint, lane), landings);
   }
 }
 #else

@@ -40,15 +40,19 @@ PatchView::PatchView(const KernelContext& context) : context_(context) {
   const unsigned next = context.device_scene.set_arguments(look);
   set_arguments(look, next, context.device_scene.camera, context.data.eye_media, corner_stride, at_corners);
   device.launch("patches: look", look, context.packets(corners));
-  const std::vector<float> fields = device.read(at_corners, 0, at_corners.size());
+  std::vector<float> fields;    // by field and corner
+  for (size_t field = 0; field < VIEW_FIELDS; ++field) {
+    const std::vector<float> values = device.read(at_corners, field * corner_stride, corners);
+    fields.insert(fields.end(), values.begin(), values.end());
+  }
   // Do the four corners of a pixel show one plane? Beyond the picture's borders they may.
   std::vector<uint8_t> at_own_corners(size_t{width + 2} * (height + 2), 1);
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x) {
       const float* corner = &fields[y * (width + 1) + x];
-      at_own_corners[(y + 1) * (width + 2) + x + 1] = is_same_plane(corner, corner + 1, corner_stride) &&
-                                                      is_same_plane(corner, corner + width + 1, corner_stride) &&
-                                                      is_same_plane(corner, corner + width + 2, corner_stride);
+      at_own_corners[(y + 1) * (width + 2) + x + 1] = is_same_plane(corner, corner + 1, corners) &&
+                                                      is_same_plane(corner, corner + width + 1, corners) &&
+                                                      is_same_plane(corner, corner + width + 2, corners);
     }
   // A pixel shows one plane if its neighbours do so too, so that what ends just beside it is none of it.
   std::vector<float> planes(size_t{VIEW_FIELDS} * layout_.plane_stride, 0.0f);
@@ -62,7 +66,7 @@ PatchView::PatchView(const KernelContext& context) : context_(context) {
       is_all_ &= is_one;
       if (!is_one) continue;
       for (size_t field = 0; field < VIEW_FIELDS; ++field)
-        planes[field * layout_.plane_stride + y * width + x] = fields[field * corner_stride + y * (width + 1) + x];
+        planes[field * layout_.plane_stride + y * width + x] = fields[size_t{field} * corners + y * (width + 1) + x];
     }
   planes_ = device.upload(planes, "caustic seen directly");
   irradiance_ = device.allocate<float>(size_t{3} * layout_.spot_stride, "caustic seen directly");
