@@ -74,6 +74,7 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   branched->alive = 0;
 #if CAUSTICS == CAUSTICS_FOOTPRINTS
   branched->point = NO_POINT;
+  branched->spacing = photons->spacing;
 #endif
   branched->direction = direction;
   branched->stack = stack;

@@ -148,6 +148,9 @@ void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, con
   map_.high.fill(-std::numeric_limits<float>::infinity());
   map_.bucket_counts.assign(size_t{1} << log2_buckets, 0);
 
+  used_rows_ = 0;
+  room_.assign(map_.bucket_counts.size(), {});
+  if (context_.features.footprints) return reserve_rows(0);  // their entries are counted before they come
   // Room by the sample's share in each bucket, with some to spare; what is not enough grows later.
   std::vector<uint32_t> in_bucket(map_.bucket_counts.size(), 0);
   for (const glm::vec3& p : sample) ++in_bucket[cell_of(map_.grid, p) >> map_.grid.bucket_shift];
@@ -157,12 +160,10 @@ void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, con
     const double wanted = each * (n + 2.0 * std::sqrt(n) + 1.0);
     rows.push_back(whole_units(static_cast<uint32_t>(std::min(wanted, static_cast<double>(expected))) + margin_rows));
   }
-  used_rows_ = 0;
   const uint64_t all = std::accumulate(rows.begin(), rows.end(), uint64_t{0});
   const auto promised = static_cast<uint64_t>(largest_row_share * static_cast<double>(expected));
   reserve_rows(std::max(all + margin_rows, promised) - margin_rows);
-  room_.clear();
-  for (uint32_t n : rows) room_.push_back(new_room(n));
+  for (size_t bucket = 0; bucket < rows.size(); ++bucket) room_[bucket] = new_room(rows[bucket]);
 }
 
 void PhotonGrid::make_room(const PhotonRuns& runs) {
@@ -172,11 +173,15 @@ void PhotonGrid::make_room(const PhotonRuns& runs) {
   std::vector<uint32_t> places = device.read(runs.counts, 0, size_t{n_runs} * buckets()), rows(buckets()), added(buckets());
   for (uint32_t run = 0; run < n_runs; ++run)
     for (uint32_t bucket = 0; bucket < buckets(); ++bucket) added[bucket] += places[run * buckets() + bucket];
+  // The first have just the room that they need, the only ones of one light and one caster.
+  const bool is_first = used_rows_ == 0;
+  if (is_first)
+    reserve_rows(std::accumulate(added.begin(), added.end(), uint64_t{0}) + uint64_t{buckets()} * 2 * margin_rows);
   for (uint32_t bucket = 0; bucket < buckets(); ++bucket) {
     const uint32_t before = std::exchange(map_.bucket_counts[bucket], map_.bucket_counts[bucket] + added[bucket]);
     const uint32_t needed = map_.bucket_counts[bucket] + margin_rows;
     if (Room& room = room_[bucket]; room.size < needed) {
-      const Room larger = new_room(2 * needed);
+      const Room larger = new_room(is_first ? needed : 2 * needed);
       device.copy(map_.photons, size_t{room.start} * row_, map_.photons, size_t{larger.start} * row_,
                   size_t{before} * row_);
       room = larger;
