@@ -27,8 +27,7 @@ KERNEL void look_at_corners(SCENE_PARAMETERS, __global const CameraData* camera,
   Mask plain = 0;
   FOR_LANES(lane, lanes_below(i, count) & (surface.t < INFINITY)) {
     __global const MaterialData* material = &scene.materials[LANE(surface.material, uint, lane)];
-    SET_LANE(plain, int, lane,
-             material->surface == SURFACE_OPAQUE && is_diffuse(material) ? -1 : 0);
+    SET_LANE(plain, int, lane, material->surface == SURFACE_OPAQUE && is_diffuse(material) ? -1 : 0);
   }
   const Vec3 normal = select3(surface.entering, surface.geometric_normal, negate3(surface.geometric_normal));
   STORE(planes, VIEW_NORMAL * stride + i, plain ? normal.x : (Float)NAN);

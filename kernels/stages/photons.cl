@@ -311,6 +311,11 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     } while (n_alive > WIDTH / 2);
   }
 
+#if defined(CLEAR_DEAD_LANES) && CAUSTICS == CAUSTICS_FOOTPRINTS
+  // Those who read the run take whole packets.
+  for (uint lane = 0; lane < WIDTH; ++lane)
+    for (uint field = 0; field < RUN_FIELDS; ++field) fields[field * photons_stride(run_length) + stored + lane] = 0.0f;
+#endif
   for (uint k = 0; k < TALLIES; ++k) {
     total_of_lanes(power[k].sum.x, power[k].rest.x, &report->power[k][0], &report->power_rest[k][0]);
     total_of_lanes(power[k].sum.y, power[k].rest.y, &report->power[k][1], &report->power_rest[k][1]);
