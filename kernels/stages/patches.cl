@@ -250,13 +250,14 @@ BODY project_run(__global const CameraData* camera, const float detail, const ui
           const Float most = FOOTPRINT_MOST_SIDE * limits.largest;
           along[axis] = scale3(length > most ? most / length : (Float)1.0f, step);
         }
-        // Half way to what is torn off, all the way to the lattice's border.
-        const Float last_u = (float)lattice.columns - lattice.shift_u - lies.step * TO_FLOAT(AS_INT(lies.column));
-        const Float last_v = (float)(1u << lattice.log2_rows) - lattice.shift_v - lies.step * TO_FLOAT(AS_INT(lies.row));
-        const Float width[4] = {lies.last_column ? last_u / lies.step : (Float)0.5f,
-                                lies.first_column ? lattice.shift_u / lies.step : (Float)0.5f,
-                                lies.last_row ? last_v / lies.step : (Float)0.5f,
-                                lies.first_row ? lattice.shift_v / lies.step : (Float)0.5f};
+        // Half way to what is torn off, and no farther than the lattice's border. What is beyond that is left out, for where
+        // rays graze their neighbours do not tell where it goes; its share falls as 1 / photons.
+        const Float half_step = 0.5f;
+        const Float rows = (float)(1u << lattice.log2_rows);
+        const Float width[4] = {smaller(((float)lattice.columns - lattice.shift_u - u0) / lies.step, half_step),
+                                smaller((u0 + lattice.shift_u) / lies.step, half_step),
+                                smaller((rows - lattice.shift_v - v0) / lies.step, half_step),
+                                smaller((v0 + lattice.shift_v) / lies.step, half_step)};
         Float torn_area = 0.0f;
         for (uint k = 0; k < 4; ++k) torn_area += torn[k] ? width[k & 1u] * width[2u + (k >> 1)] : (Float)0.0f;
         const Float low_u = (torn[1] | torn[3]) ? -width[1] : (Float)0.0f;

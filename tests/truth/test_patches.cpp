@@ -79,7 +79,8 @@ TEST_CASE("patches: the error of the ball's caustic, exact and as a mesh, falls 
       const std::vector<double> irradiance = CausticPlate::irradiance(result);
       for (size_t i = 0; i < irradiance.size(); ++i) found += irradiance[i], truth += plate.truth()[i];
       MESSAGE(photons << " photons: error " << errors.back() << ", flux " << found / truth);
-      CHECK(std::abs(found / truth - 1) < 0.25 / std::sqrt(static_cast<double>(photons)));
+      // What is beyond half a step at the border is left out.
+      CHECK(std::abs(found / truth - 1) < 40.0 / static_cast<double>(photons) + 1e-4);
     }
     CHECK(errors[0] < 0.14);
     CHECK(errors[1] < 0.06);
