@@ -8,20 +8,34 @@
 
 #include "lights.h"
 #include "photon_map.h"
+#include "sampler.h"
 
-// A point of the lattice as what emission takes: the square of the radius in a disc, and the angle in turns. Shirley and
-// Chiu, A Low Distortion Map Between Disk and Square, 1997: neighbours in the square are neighbours in the disc.
+// A place on the lattice in the disc of emission, of radius 1: Shirley and Chiu, A Low Distortion Map Between Disk and Square,
+// 1997. Neighbours in the square are neighbours in the disc. (column, row) need not be a point.
+typedef struct {
+  Mask wide;                   // in the wedges about the x axis
+  Float radius;                // less than 0: on the other side
+  Float turns;                 // from that axis, to which the wedge belongs, towards the other: -1/8 to 1/8
+} InWedge;
+
+FUNCTION InWedge place_in_wedge(const LatticeData lattice, const Float column, const Float row) {
+  const Float x = fma((Float)2.0f, (column + lattice.shift_u) / (float)lattice.columns, (Float)-1.0f);
+  const Float y = fma((Float)2.0f, (row + lattice.shift_v) / (float)(1u << lattice.log2_rows), (Float)-1.0f);
+  InWedge p;
+  p.wide = fabs(x) > fabs(y);
+  p.radius = p.wide ? x : y;
+  p.turns = 0.125f * ((p.wide ? y : x) / (p.radius == 0.0f ? (Float)1.0f : p.radius));
+  return p;
+}
+
+// A point of the lattice as what emission takes: the square of the radius in the disc, and the angle in turns.
 FUNCTION void lattice_point(const LatticeData lattice, const Uint point, Float u[2]) {
   const Float column = TO_FLOAT(AS_INT(point >> lattice.log2_rows));
   const Float row = TO_FLOAT(AS_INT(point & ((1u << lattice.log2_rows) - 1u)));
-  const Float x = fma((Float)2.0f, (column + lattice.shift_u) / (float)lattice.columns, (Float)-1.0f);
-  const Float y = fma((Float)2.0f, (row + lattice.shift_v) / (float)(1u << lattice.log2_rows), (Float)-1.0f);
-  const Mask wide = fabs(x) > fabs(y);
-  const Float radius = wide ? x : y;
-  const Float slope = (wide ? y : x) / (radius == 0.0f ? (Float)1.0f : radius);
-  const Float turns = (wide ? 0.125f * slope : fma((Float)-0.125f, slope, (Float)0.25f)) + (radius < 0.0f ? 0.5f : 0.0f);
+  const InWedge p = place_in_wedge(lattice, column, row);
+  const Float turns = (p.wide ? p.turns : 0.25f - p.turns) + (p.radius < 0.0f ? 0.5f : 0.0f);
   const Float below_1 = 0.99999994f;
-  u[0] = smaller(radius * radius, below_1);
+  u[0] = smaller(p.radius * p.radius, below_1);
   u[1] = smaller(turns < 0.0f ? turns + 1.0f : turns, below_1);
 }
 
@@ -33,23 +47,19 @@ typedef struct {
   Mask first_column, last_column, first_row, last_row;
 } LatticePlace;
 
-// A place in the disc of emission, of radius 1, that the square is mapped to; (column, row) need not be a point.
+// A place in the disc of emission.
 typedef struct {
   Float x, y;
 } DiscPlace;
 
 FUNCTION DiscPlace place_in_disc(const LatticeData lattice, const Float column, const Float row) {
-  const Float x = fma((Float)2.0f, (column + lattice.shift_u) / (float)lattice.columns, (Float)-1.0f);
-  const Float y = fma((Float)2.0f, (row + lattice.shift_v) / (float)(1u << lattice.log2_rows), (Float)-1.0f);
-  const Mask wide = fabs(x) > fabs(y);
-  const Float radius = wide ? x : y;
-  const Float angle = 0.785398163397448f * (wide ? y : x) / (radius == 0.0f ? (Float)1.0f : radius);
-  const Float sine = radius * sin(angle);
-  const Float cosine = radius * cos(angle);
-  DiscPlace p;
-  p.x = wide ? cosine : sine;
-  p.y = wide ? sine : cosine;
-  return p;
+  const InWedge p = place_in_wedge(lattice, column, row);
+  Float sine, cosine;
+  sin_cos_turn(p.turns, &sine, &cosine);
+  DiscPlace disc;
+  disc.x = p.radius * (p.wide ? cosine : sine);
+  disc.y = p.radius * (p.wide ? sine : cosine);
+  return disc;
 }
 
 FUNCTION LatticePlace place_on_lattice(const LatticeData lattice, const Uint point) {
@@ -86,6 +96,12 @@ typedef struct {
 #define FOOTPRINT_MOST_APART 8.0f
 // Sides beyond so many times `largest` are cut off: two parts of the highest level.
 #define FOOTPRINT_MOST_SIDE 128.0f
+
+// Side of the square of photons that have no neighbours [m]. Alone on its way, one of a lattice is one of few, farther apart.
+FUNCTION Float side_alone(const FootprintLimits limits, const Mask on_lattice, const Float spacing) {
+  const Float apart = on_lattice ? larger(spacing, (Float)LEVEL_RATIO) : spacing;
+  return limits.largest * smaller(apart, (Float)FOOTPRINT_MOST_APART);
+}
 
 // Into how many parts no larger than `largest` a side of this length is cut.
 FUNCTION Float parts_of(const Float side, const float largest) {
@@ -135,9 +151,7 @@ FUNCTION Footprint footprint_of(const LatticeData lattice, __global const float*
   const Float off_u = dot3(u, normal);
   const Float off_v = dot3(v, normal);
   found &= (off_u * off_u <= 0.25f * dot3(u, u)) & (off_v * off_v <= 0.25f * dot3(v, v));
-  // Alone on its way, it is one of few, farther apart.
-  const Float apart = on_lattice ? larger(spacing, (Float)LEVEL_RATIO) : spacing;
-  const Float alone = limits.largest * smaller(apart, (Float)FOOTPRINT_MOST_APART);
+  const Float alone = side_alone(limits, on_lattice, spacing);
   Float a = found ? dot3(u, frame.x) : alone;
   Float b = found ? dot3(v, frame.x) : 0.0f;
   Float c = found ? dot3(u, frame.y) : 0.0f;

@@ -1,5 +1,5 @@
 // Photons whose footprints cover a place. Included by gather.h. Each cell of the grid lists all that reach into it, so one
-// cell of small and one of large footprints are all there is to look at.
+// cell of each level is all there is to look at.
 #ifndef VITRUM_GATHER_FOOTPRINTS_H
 #define VITRUM_GATHER_FOOTPRINTS_H
 

@@ -38,6 +38,7 @@ typedef struct {
 #define VIEW_OFFSET 3          // along it [m]
 #define VIEW_TOLERANCE 4       // how far off places on it may be for their roundings [m]
 #define VIEW_FIELDS 5
+#define VIEW_SAME_NORMAL 0.9999f  // cosine between normals of one plane
 
 // Where pixels and spots lie in their buffers.
 typedef struct {
@@ -89,7 +90,7 @@ FUNCTION Vec3 irradiance_shown(const PatchView view, const Uint column, const Ui
 }
 
 FUNCTION Mask is_on(const ShownPlane* shown, const Vec3 place, const Vec3 normal) {
-  return (dot3(shown->normal, normal) > 0.9999f) & (fabs(dot3(shown->normal, place) - shown->offset) <= shown->tolerance);
+  return (dot3(shown->normal, normal) > VIEW_SAME_NORMAL) & (fabs(dot3(shown->normal, place) - shown->offset) <= shown->tolerance);
 }
 #else
 typedef struct {

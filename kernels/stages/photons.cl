@@ -215,6 +215,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     power[k].sum = power[k].rest = make_vec3(0.0f, 0.0f, 0.0f);
     ended[k] = 0;
   }
+  const uint n_branch_points = branch_points(lattice);
   uint surfaces = 0;
   uint stored = 0;
   uint n_branched = 0;
@@ -223,7 +224,6 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
   Vec3 high = negate3(low);
   // Those outside of all media and those inside wait apart, since they meet different surfaces.
   Waiting waiting[2];
-  const uint n_branch_points = branch_points(lattice);
   waiting[0].count = waiting[1].count = 0;
 #ifdef CLEAR_DEAD_LANES
   // A packet that is not full takes its dead lanes from behind those that wait.

@@ -99,14 +99,16 @@ void run_info(const SceneArguments& arguments) {
   std::printf(", film %.3f MiB", pixels * FILM_PLANES * sizeof(float) / 0x1p20);
   if (features.caustics) {
     // Of one pass: as stored and in rows of the sort; or in a tree, with a node to seven leaves or nodes of eight photons. With
-    // footprints, room for twice as many that branch off, what neighbours tell each other, and about six entries each.
-    const double floats = features.footprints ? (3.0 + 6.0) * FOOTPRINT_ROW + 1.5 * LANDING_ROW
+    // footprints, room for twice as many that branch off, what neighbours tell each other, and about nine entries each, several
+    // times as many where light is focussed in one place and spread in another.
+    const double floats = features.footprints ? (3.0 + 9.0) * FOOTPRINT_ROW + 1.5 * LANDING_ROW
                                               : PHOTON_ROW + (features.nearest_photons ? PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0
                                                                                        : double{PHOTON_ROW});
     double photons = by_rounds ? static_cast<double>(photons_in_memory)
                                : std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
     if (features.footprints) photons = std::min(photons, static_cast<double>(most_footprints));
-    std::printf(", photon map up to %.1f MiB", photons * (sizeof(float) * floats) / 0x1p20);
+    std::printf(", photon map %s %.1f MiB", features.footprints ? "about" : "up to",
+                photons * (sizeof(float) * floats) / 0x1p20);
   }
   std::printf("\n");
 }

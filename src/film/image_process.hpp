@@ -1,8 +1,8 @@
 #pragma once
 // The process for pictures (the program vitrum_images), as the rest of vitrum sees it. It reads them all, and writes all
-// but EXR (exr_file.hpp). OpenImageIO lives there since it
-// loads some 260 libraries, for .2 s under the dynamic loader's lock, which would keep the OpenCL driver from loading
-// kernels; and since a picture that crashes its reader then costs an error message, not vitrum.
+// but EXR (exr_file.hpp). OpenImageIO lives there since it loads some 260 libraries, for .2 s under the dynamic loader's lock,
+// which would keep the OpenCL driver from loading kernels; and since a picture that crashes its reader then costs an error
+// message, not vitrum.
 //
 // The process is started once, ends with vitrum at the latest, and answers one request at a time. One that has been
 // ended while it had nothing to do is replaced.

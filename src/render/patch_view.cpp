@@ -17,7 +17,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 /// Are both the same plane, seen from the same side? As a patch's plane is compared with a pixel's; fields are `stride` apart.
 bool is_same_plane(const float* a, const float* b, size_t stride) {
   const float along = a[0] * b[0] + a[stride] * b[stride] + a[2 * stride] * b[2 * stride];
-  return along > 0.9999f && std::abs(a[VIEW_OFFSET * stride] - b[VIEW_OFFSET * stride]) <=
+  return along > VIEW_SAME_NORMAL && std::abs(a[VIEW_OFFSET * stride] - b[VIEW_OFFSET * stride]) <=
                                 std::min(a[VIEW_TOLERANCE * stride], b[VIEW_TOLERANCE * stride]);
 }
 

@@ -161,7 +161,7 @@ std::vector<std::string> photon_stages_for(const Features& f) {
 std::vector<std::string> stages_for(const Features& f) {
   std::vector<std::string> stages = photon_stages_for(f);
   stages.insert(stages.begin(), "camera");
-  if (f.footprints) stages.push_back("patches");
+  if (f.footprints) stages.insert(stages.end(), {"patches", "patch_drawing"});
   return stages;
 }
 

@@ -33,7 +33,7 @@ class DrawKernel {
   DrawKernel(unsigned vector_width, uint32_t detail) : device_("", 32, vector_width), detail_(detail) {
     Features features;
     features.caustics = features.footprints = true;
-    kernel_ = cl::Kernel(device_.build("stages/patches.cl", kernel_source({}, {"stages/patches.cl"}),
+    kernel_ = cl::Kernel(device_.build("stages/patch_drawing.cl", kernel_source({}, {"stages/patch_drawing.cl"}),
                                        "-cl-std=CL1.2" + features.build_options()),
                          "draw_patches");
   }

@@ -7,20 +7,11 @@
 #include <numbers>
 
 #include "film/statistics.hpp"
+#include "truth/caustics.hpp"
 #include "verify/caustic_plate.hpp"
 
 namespace vitrum {
 namespace {
-
-RenderResult caustics_of(Scene scene, uint64_t photons, int samples, PhotonEstimate estimate, Device& device) {
-  scene.photons.estimate = estimate;
-  scene.photons.count = photons;
-  scene.photons.radius = 0.01;
-  scene.render.samples = samples;
-  RenderOptions options;
-  options.views = {View::caustics};
-  return render(scene, device, options);
-}
 
 /// A lamp over a ball of glass and a mirror ball, in a corner of floor and wall with a step in it.
 Scene corner(const glm::dvec3& eye, const glm::dvec3& look_at) {
@@ -36,6 +27,7 @@ Scene corner(const glm::dvec3& eye, const glm::dvec3& look_at) {
   add(scene, box({-0.4f, 0.0f, -0.1f}, {0.05f, 0.1f, 0.4f}, 3), 3);
   scene.lights.push_back({"lamp", {}, PointLight{{0.2, 1.6, 0.1}, Spectrum(1.0)}});
   scene.photons.max_depth = 8;
+  scene.photons.radius = 0.01;
   return scene;
 }
 
