@@ -74,9 +74,10 @@ BODY shoot_rays(const Scene scene, __global const float* edges, const uint n_edg
 
 // Every one of them must hit: it is aimed at the mesh's edges.
 KERNEL void edge_rays(SCENE_PARAMETERS, __global const float* edges, const uint n_edges, __global const AimData* aim,
-                      const uint packets, __global GeometryResult* results) {
+                      const uint packets, const uint items, __global GeometryResult* results) {
   const Scene scene = SCENE;
   const uint item = get_global_id(0);
+  if (item >= items) return;
   shoot_rays(scene, edges, n_edges, aim, item * packets * WIDTH, packets, &results[item]);
 }
 
@@ -124,8 +125,9 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
 
 // Photons that are reflected and refracted at random until they leave the mesh.
 KERNEL void chains(SCENE_PARAMETERS, __global const float* edges, const uint n_edges, __global const AimData* aim,
-                   const uint packets, const uint max_depth, __global GeometryResult* results) {
+                   const uint packets, const uint items, const uint max_depth, __global GeometryResult* results) {
   const Scene scene = SCENE;
   const uint item = get_global_id(0);
+  if (item >= items) return;
   follow_chains(scene, edges, n_edges, aim, item * packets * WIDTH, packets, max_depth, &results[item]);
 }

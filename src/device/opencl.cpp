@@ -99,6 +99,11 @@ std::vector<DeviceInfo> list_devices() {
   return infos;
 }
 
+std::string rounding_options(const cl::Device& device) {
+  const bool can = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
+  return can ? " -cl-fp32-correctly-rounded-divide-sqrt" : "";
+}
+
 std::string opencl_error_name(int code) {
   const char* name = "an unknown error";
   switch (code) {
@@ -162,6 +167,7 @@ Device::Device(const std::string& choice, unsigned group_size, unsigned width, u
     // On GPUs the work-items are the lanes.
     const unsigned lanes = info_.is_cpu ? device_.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() : 1;
     if (width_ == 0) width_ = lanes >= 16 ? 16 : lanes >= 8 ? 8 : lanes >= 4 ? 4 : 1;
+    build_options_ = rounding_options(device_) + " -DWIDTH=" + std::to_string(width_);
     const size_t largest = device_.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
     group_size_ = static_cast<unsigned>(std::clamp<size_t>(group_size_, 1, largest));
   } catch (const cl::Error& error) {
@@ -172,7 +178,7 @@ Device::Device(const std::string& choice, unsigned group_size, unsigned width, u
 cl::Program Device::build(const std::string& name, const std::string& source, const std::string& options) const {
   cl::Program program(context_, source);
   try {
-    program.build({device_}, (options + " -DWIDTH=" + std::to_string(width_)).c_str());
+    program.build({device_}, (options + build_options_).c_str());
   } catch (const cl::Error& error) {
     const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_).substr(0, 2000);  // the first cause
     throw Error({"kernels/" + name, 0, 0},

@@ -40,6 +40,10 @@ void prepare_opencl(unsigned threads);
 /// All devices of all platforms, in OpenCL's order.
 std::vector<DeviceInfo> list_devices();
 
+/// The build options by which `device` rounds quotients and square roots correctly, "" where it cannot: OpenCL 1.2 grants
+/// 2.5 and 3 ulp otherwise, which GPUs make use of.
+std::string rounding_options(const cl::Device& device);
+
 /// `text` in a form that an OpenCL error is told in: "CL_OUT_OF_RESOURCES (-5)".
 std::string opencl_error_name(int code);
 
@@ -134,6 +138,7 @@ class Device {
   cl::CommandQueue queue_;
   unsigned group_size_;
   unsigned width_;
+  std::string build_options_;
   std::vector<std::pair<std::string, cl::Event>> launched_;
   std::map<std::string, double> seconds_;
   std::map<std::string, uint64_t> memory_;

@@ -103,9 +103,9 @@ class Target {
     cl::Kernel kernel(program_, max_depth > 0 ? "chains" : "edge_rays");
     const unsigned next = scene_.set_arguments(kernel);
     const auto aim_buffer = device_.upload(std::vector<AimData>{aim}, "inputs of checks");
-    set_arguments(kernel, next, edges_, static_cast<uint32_t>(edges_.size() / 6), aim_buffer, packets);
-    if (max_depth > 0) set_arguments(kernel, next + 4, max_depth, results);
-    else set_arguments(kernel, next + 4, results);
+    set_arguments(kernel, next, edges_, static_cast<uint32_t>(edges_.size() / 6), aim_buffer, packets, items);
+    if (max_depth > 0) set_arguments(kernel, next + 5, max_depth, results);
+    else set_arguments(kernel, next + 5, results);
     device_.launch_singly("checks", kernel, items);
     GeometryResult all{};
     for (const GeometryResult& r : device_.read(results, 0, items)) {

@@ -1,13 +1,11 @@
 #pragma once
 // Just enough OpenCL for the tests of the tree: the first device, kernels from text, buffers from vectors.
 
-#define CL_HPP_TARGET_OPENCL_VERSION 120
-#define CL_HPP_MINIMUM_OPENCL_VERSION 120
-#define CL_HPP_ENABLE_EXCEPTIONS
-#include <CL/opencl.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "device/opencl.hpp"
 
 namespace vitrum {
 
@@ -17,10 +15,12 @@ class OpenClHarness {
 
   cl::Program build(const std::string& source, const std::string& options = "") const {
     cl::Program program(context_, source);
+    const cl::Device device = context_.getInfo<CL_CONTEXT_DEVICES>().front();
     try {
-      program.build(("-cl-std=CL1.2 -I " VITRUM_SOURCE_DIR "/kernels " + options).c_str());
-    } catch (const cl::BuildError& error) {
-      throw std::runtime_error(error.getBuildLog().front().second);
+      const std::string all = "-cl-std=CL1.2 -I " VITRUM_SOURCE_DIR "/kernels " + options + rounding_options(device);
+      program.build(all.c_str());
+    } catch (const cl::Error&) {
+      throw std::runtime_error(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
     }
     return program;
   }

@@ -107,26 +107,26 @@ __kernel void improve(__global const TreeNode* nodes, __global const TreeLeaf* l
 )";
 
 /// The device with both ways to read a mask from a vector.
-struct Device {
+struct TreeTracer {
   OpenClHarness cl;
   std::array<cl::Program, 2> kernels{cl.build(kernel_text), cl.build(kernel_text, "-DVITRUM_PORTABLE")};
 
-  static const Device& get() {
-    static const Device device;
-    return device;
+  static const TreeTracer& get() {
+    static const TreeTracer tracer;
+    return tracer;
   }
 };
 
 std::vector<Result> trace(const std::vector<TreeTriangle>& triangles, std::vector<RayData> rays, bool portable = false) {
-  const Device& device = Device::get();
+  const TreeTracer& tracer = TreeTracer::get();
   const Tree tree = build_tree(triangles);
   const size_t count = rays.size();
   rays.resize((count + 63) / 64 * 64, rays.back());
-  const cl::Buffer results = device.cl.upload(std::vector<Result>(rays.size()));
-  device.cl.run(device.kernels[portable], "trace", rays.size(), device.cl.upload(tree.nodes),
-                device.cl.upload(tree.leaves), static_cast<uint32_t>(tree.leaves.size()), device.cl.upload(rays),
+  const cl::Buffer results = tracer.cl.upload(std::vector<Result>(rays.size()));
+  tracer.cl.run(tracer.kernels[portable], "trace", rays.size(), tracer.cl.upload(tree.nodes),
+                tracer.cl.upload(tree.leaves), static_cast<uint32_t>(tree.leaves.size()), tracer.cl.upload(rays),
                 results);
-  return device.cl.download<Result>(results, count);
+  return tracer.cl.download<Result>(results, count);
 }
 
 /// The tree loses nothing and adds nothing: its answers are those of every triangle tested by itself, bit by bit.
@@ -404,7 +404,7 @@ TEST_CASE("the hit's weights put it where the ray is") {
 }
 
 TEST_CASE("a hit that is there already is only replaced by one that comes before it") {
-  const Device& device = Device::get();
+  const TreeTracer& tracer = TreeTracer::get();
   const Tree tree = build_tree(std::vector<TreeTriangle>{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, 6}});  // at t = 1
   struct Case {
     HitData held;                           ///< u is the ray's t_max
@@ -421,11 +421,11 @@ TEST_CASE("a hit that is there already is only replaced by one that comes before
                         {{INFINITY, ~0u, ~0u, 1.01f, 0}, true, true}};
   std::vector<HitData> held(64);
   for (size_t i = 0; i < std::size(cases); ++i) held[i] = cases[i].held;
-  const cl::Buffer hits = device.cl.upload(held), found = device.cl.upload(std::vector<uint32_t>(64));
-  device.cl.run(device.kernels[0], "improve", 64, device.cl.upload(tree.nodes), device.cl.upload(tree.leaves), hits,
+  const cl::Buffer hits = tracer.cl.upload(held), found = tracer.cl.upload(std::vector<uint32_t>(64));
+  tracer.cl.run(tracer.kernels[0], "improve", 64, tracer.cl.upload(tree.nodes), tracer.cl.upload(tree.leaves), hits,
                 found);
-  const auto after = device.cl.download<HitData>(hits, 64);
-  const auto replaced = device.cl.download<uint32_t>(found, 64);
+  const auto after = tracer.cl.download<HitData>(hits, 64);
+  const auto replaced = tracer.cl.download<uint32_t>(found, 64);
   for (size_t i = 0; i < std::size(cases); ++i) {
     CAPTURE(i);
     CHECK((replaced[i] & 1) == cases[i].replaced);
