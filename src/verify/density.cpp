@@ -8,6 +8,7 @@
 #include "render/photon_tree.hpp"
 #include "verify/estimates.hpp"
 #include "verify/groups.hpp"
+#include "verify/patch_pictures.hpp"
 #include "verify/photon_run.hpp"
 #include "verify/scenes.hpp"
 
@@ -323,6 +324,7 @@ std::vector<CheckResult> check_density(const CheckContext& context) {
   unbiased.rows("density/unbiased", "irradiance convolved with Epanechnikov's kernel", context.full ? 8e-4 : 2.5e-3,
                 "relative", blunt, rows);
   rows.insert(rows.end(), others.begin(), others.end());
+  for (CheckResult& row : check_patches(context)) rows.push_back(std::move(row));
   return rows;
 }
 

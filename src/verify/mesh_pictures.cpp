@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "verify/estimates.hpp"
+#include "verify/shells.hpp"
 #include "verify/truth_pictures.hpp"
 
 namespace vitrum {
@@ -18,7 +18,13 @@ namespace {
 
 using glm::dvec3;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 const dvec3 eye(0.2, 0.3, 4);
+/// On the rim of the ball of radius 1, seen from there; where the rim begins [m], as the rays' distance from the centre.
+const dvec3 rim_place = 0.99 * glm::normalize(glm::cross(eye, dvec3(1, 0.2, 0.1)));
+constexpr double rim_begins = 0.9;
+
 const Spectrum absorption(0.1, 0.5, 2.0);
 
 uint32_t add_medium(Scene& scene, double index, const Spectrum& sigma_a, int priority = 0) {
@@ -37,36 +43,62 @@ Scene surround(int size) {
   return scene;
 }
 
+/// How errors fall with the number of rings, of several bodies.
+class Orders {
+ public:
+  /// `line`: the error by the number of rings. True if its order is the farthest one off 2 up to now.
+  bool add(PlotLine line) {
+    const double order = -fitted_exponent(line.points), off = std::abs(order - 2);
+    const bool is_worst = !(off <= worst_.error);
+    if (is_worst) where_ = line.name + printed(": order %.3f", order);
+    worst_.add(off, worst_.cases);
+    lines_.push_back(std::move(line));
+    return is_worst;
+  }
+
+  /// Errors that fall as 1/n or 1/n^3, or not at all, are off by 1 and more; rays that bunch up, by .1.
+  CheckResult row(const std::string& name, const char* truth, const char* plot) const {
+    return {name, worst_.cases, worst_.error, 0.25, "of the order", truth, where_,
+            {{plot, "rings of facets", "mean |pixel - truth|", lines_, true, true}}, {}};
+  }
+
+ private:
+  Worst worst_;
+  std::string where_;
+  std::vector<PlotLine> lines_;
+};
+
 /// Pictures of bodies by ever finer meshes with the bodies' normals, held against the bodies: shells around the origin.
 ///
 /// The normal at a place of a facet points away from the centre, as a ball's does: so the distance of a path from the
-/// centre, times the index, is what it is at the ball. Facets lie up to h^2/4 under a ball of radius 1, h^2/6 on
-/// average, for h = pi/n with n rings: radiance is off by ~ 1/n^2. Not so at the rim, where facets hide each other and
-/// normals point away from the eye: only rays that pass within .9 of the outer radius count.
+/// centre, times the index, is what it is at the ball, and radiance is off by ~ 1/n^2 for n rings (facets_bound). Not so at
+/// the rim, where facets hide each other and normals point away from the eye. There only the width of the ring where that
+/// is so falls as 1/n^2; so it is looked at by itself, in a picture of a piece of the rim.
 class FacetRows {
  public:
-  /// `borders`: radii of the borders that a ray meets after the first, summed.
-  FacetRows(const CheckContext& context, int size, double borders)
-      : context_(context), size_(size), borders_(borders), fine_rings_(context.full ? 128 : 64) {}
+  FacetRows(const CheckContext& context, int size)
+      : context_(context), size_(size), fine_rings_(context.full ? 128 : 64) {}
 
-  /// `add_bodies(scene, rings)` makes meshes of `shells`.
-  void add(const std::string& what, const std::vector<Shell>& shells,
-           const std::function<void(Scene&, int)>& add_bodies) {
-    PlotLine line{what, {}};
-    Means coarse, fine;
+  void add(const std::string& what, const std::vector<Shell>& shells) {
+    PlotLine line{what, {}}, rim_line{what, {}};
+    Means coarse, fine, rim;
     for (int rings = 16; rings <= fine_rings_; rings *= 2) {
       Scene scene = surround(size_);
       // So little is cut that it stays below the error of the finest facets, which it could make good.
       scene.render.min_weight = context_.full ? 1e-7 : 1e-5;
-      add_bodies(scene, rings);
+      add_mesh_shells(scene, shells, rings);
       coarse = fine;
-      fine = means(scene, shells);
+      fine = means(scene, shells, 0.0, rim_begins);
       line.points.emplace_back(rings, fine.deviation);
+      scene.camera.look_at = rim_place;
+      scene.camera.vertical_fov = 4;
+      rim = means(scene, shells, rim_begins, infinity);
+      rim_line.points.emplace_back(rings, rim.deviation);
     }
-    const double order = -fitted_exponent(line.points), off = std::abs(order - 2);
-    if (!(off <= order_.error)) order_where_ = what + printed(": order %.3f", order);
-    order_.add(off, order_.cases);
-    lines_.push_back(std::move(line));
+    bound_ = std::max(bound_, facets_bound(fine_rings_, shells));
+    order_.add(std::move(line));
+    if (rim_order_.add(std::move(rim_line)))
+      rim_pictures_ = rim.rendered->pictures(what + printed(", %d rings, the rim", fine_rings_), rim.errors, rim.scale);
     for (int c = 0; c < 3; ++c) {
       const auto extrapolated = [c, &coarse, &fine](Spectrum Means::*mean) {
         return (4 * (fine.*mean)[c] - (coarse.*mean)[c]) / 3;
@@ -82,17 +114,13 @@ class FacetRows {
   }
 
   std::vector<CheckResult> rows(const std::string& name, const char* truth) const {
-    // Rays that bunch up on few facets behind the first border may meet their middles alone, or their corners: then
-    // the mean depth of facets is off by up to h^2/6, and what is extrapolated by (4 h^2 + (2 h)^2)/18 = 4 h^2/9. With
-    // the length of a path radiance changes by at most sigma exp(-2 sigma c)/c <= 1/(2 e c^2), c = cos theta_t: .25/m
-    // on average over the pixels that count, for an index of 1.333 and more. The next term, of 1/n^4, is far smaller.
-    const double h = std::numbers::pi / fine_rings_, bound = 4 * h * h / 9 * 0.25 * borders_;
     std::vector<CheckResult> rows;
-    rows.push_back({name, mean_.cases, mean_.error, bound, "mean radiance", truth, mean_where_, {}, pictures_});
-    // Errors that fall as 1/n or 1/n^3, or not at all, are off by 1 and more; rays that bunch up, by .1.
-    rows.push_back({name + ": facets", order_.cases, order_.error, 0.25, "of the order",
-                    "mean |pixel - truth| ~ 1/n^2 for n rings", order_where_,
-                    {{"Facets: pictures of balls as meshes, off the balls'", "rings of facets", "mean |pixel - truth|", lines_, true, true}}, {}});
+    rows.push_back({name, mean_.cases, mean_.error, bound_, "mean radiance", truth, mean_where_, {},
+                    pictures_});
+    const char* order_truth = "mean |pixel - truth| ~ 1/n^2 for n rings";
+    rows.push_back(order_.row(name + ": facets", order_truth, "Facets: pictures of balls as meshes, off the balls'"));
+    rows.push_back(rim_order_.row(name + ": rim", order_truth, "Facets: pictures of the rim of balls as meshes, off the balls'"));
+    rows.back().pictures = rim_pictures_;
     return rows;
   }
 
@@ -106,7 +134,8 @@ class FacetRows {
     double scale = 1.0;         ///< of the errors' colours: the rim's are beyond it
   };
 
-  Means means(const Scene& scene, const std::vector<Shell>& shells) const {
+  /// Of the rays whose distance from the centre is in [least, most].
+  Means means(const Scene& scene, const std::vector<Shell>& shells, double least, double most) const {
     Means sums;
     sums.rendered.emplace(context_, scene);
     double pixels = 0.0;
@@ -114,7 +143,7 @@ class FacetRows {
     for (size_t i = 0; i < sums.rendered->cut.size(); ++i) {
       const double p = glm::length(glm::cross(eye, direction_of(scene, i))), cut = sums.rendered->cut[i];
       float worst = 0.0f;
-      const bool counts = p <= 0.9;
+      const bool counts = p >= least && p <= most;
       pixels += counts;
       const Spectrum exact = shells_radiance(shells, p);
       for (int c = 0; c < 3; ++c) {
@@ -138,28 +167,13 @@ class FacetRows {
 
   const CheckContext& context_;
   int size_;
-  double borders_;
+  double bound_ = 0.0;
   int fine_rings_;
-  Worst mean_, order_;
-  std::string mean_where_, order_where_;
-  std::vector<PlotLine> lines_;
-  std::vector<CheckPicture> pictures_;
+  Worst mean_;
+  Orders order_, rim_order_;
+  std::string mean_where_;
+  std::vector<CheckPicture> pictures_, rim_pictures_;
 };
-
-/// A ball with a hole: the faces of `hole` turned inside out. Both with normals.
-Mesh hollowed(Mesh ball, const Mesh& hole) {
-  const auto positions = static_cast<uint32_t>(ball.positions.size());
-  const auto normals = static_cast<uint32_t>(ball.normals.size());
-  ball.positions.insert(ball.positions.end(), hole.positions.begin(), hole.positions.end());
-  for (const glm::vec3& normal : hole.normals) ball.normals.push_back(-normal);
-  for (size_t k = 0; k < hole.triangles.size(); ++k) {
-    const glm::uvec3 corners = hole.triangles[k], n = hole.normal_indices[k];
-    ball.triangles.push_back(positions + glm::uvec3(corners.x, corners.z, corners.y));
-    ball.normal_indices.push_back(normals + glm::uvec3(n.x, n.z, n.y));
-  }
-  ball.materials.insert(ball.materials.end(), hole.materials.begin(), hole.materials.end());
-  return ball;
-}
 
 }  // namespace
 
@@ -179,31 +193,16 @@ std::vector<CheckResult> check_mesh_furnace(const CheckContext& context, int siz
 }
 
 std::vector<CheckResult> check_mesh_ball(const CheckContext& context, int size) {
-  FacetRows rows(context, size, 1.0);
+  FacetRows rows(context, size);
   for (const double n : context.full ? std::vector<double>{1.333, 1.5, 2.4} : std::vector<double>{1.5, 2.4})
-    rows.add(printed("n = %g, sigma_a = .1, .5, 2", n), {{1.0, n, absorption}}, [n](Scene& scene, int rings) {
-      add(scene, mesh_ball({0, 0, 0}, 1.0, rings, 2 * rings, true, add_medium(scene, n, absorption)));
-    });
+    rows.add(printed("n = %g, sigma_a = .1, .5, 2", n), {{1.0, n, absorption}});
   return rows.rows("slab-and-ball/mesh ball", "the ball's: facets of two sizes, extrapolated by 1/n^2");
 }
 
 std::vector<CheckResult> check_mesh_shells(const CheckContext& context, int size) {
-  // A ball of glass, in its hole a liquid up to the very corners of the wall, and ice in that.
-  FacetRows rows(context, size, 2 * 0.8 + 2 * 0.4 + 1.0);
-  for (const double n : context.full ? std::vector<double>{1.333, 1.7} : std::vector<double>{1.333}) {
-    const std::vector<Shell> shells = {
-        {1.0, 1.5, absorption}, {0.8, n, {0.5, 0.3, 0.1}}, {0.4, 1.31, {0.5, 1.0, 0.2}}};
-    rows.add(printed("n = 1.5 around %g, around 1.31", n), shells, [&shells](Scene& scene, int rings) {
-      std::vector<Mesh> balls;
-      for (const auto& [radius, index, sigma_a] : shells)
-        balls.push_back(mesh_ball({0, 0, 0}, radius, rings, 2 * rings, true, add_medium(scene, index, sigma_a)));
-      Mesh hole = balls[1];
-      hole.materials = balls[0].materials;
-      add(scene, hollowed(balls[0], hole));
-      add(scene, balls[1]);
-      add(scene, balls[2]);
-    });
-  }
+  FacetRows rows(context, size);
+  for (const double n : context.full ? std::vector<double>{1.333, 1.7} : std::vector<double>{1.333})
+    rows.add(printed("n = 1.5 around %g, around 1.31", n), glass_liquid_ice(n));
   return rows.rows("slab-and-ball/mesh shells", "balls that touch: facets of two sizes, extrapolated by 1/n^2");
 }
 

@@ -1,5 +1,5 @@
-// Photons by themselves: what becomes of their power, and where it lands, against integrals over the ball, over the
-// lamp's directions above a pool, and over an emissive mesh.
+// Photons by themselves: what becomes of their power, and where it lands, against integrals over the ball, over shells
+// that touch, over the lamp's directions above a pool, and over an emissive mesh.
 
 #include <algorithm>
 #include <array>
@@ -16,6 +16,7 @@
 #include "verify/groups.hpp"
 #include "verify/photon_run.hpp"
 #include "verify/scenes.hpp"
+#include "verify/shells.hpp"
 
 namespace vitrum {
 namespace {
@@ -37,6 +38,28 @@ double hemispherical_reflectance(double n) {
          n2 * (n2 - 1) * (n2 - 1) / ((n2 + 1) * (n2 + 1) * (n2 + 1)) * std::log((n - 1) / (n + 1)) -
          2 * n2 * n * (n2 + 2 * n - 1) / ((n2 + 1) * (n4 - 1)) +
          8 * n4 * (n4 + 1) / ((n2 + 1) * (n4 - 1) * (n4 - 1)) * std::log(n);
+}
+
+/// What shells absorb of the light of ball_over_plane [W], in channel `c`: all that they do not send back, since who sees
+/// them in a white surround would look along the way of the light.
+double absorbed_by_shells(const std::vector<Shell>& shells, double light_distance, int c) {
+  // p = sin u is a ray's distance from the centre; beyond a critical angle, or beside the next shell, its way is another.
+  std::vector<double> ends = {0.0, pi / 2};
+  double outside = 1.0;
+  for (const Shell& shell : shells) {
+    for (const double p : {outside * shell.radius, shell.index * shell.radius})
+      if (p < 1.0) ends.push_back(std::asin(p));
+    outside = shell.index;
+  }
+  std::sort(ends.begin(), ends.end());
+  const auto absorbed = [&](double u) {
+    const double p = std::sin(u), share = (1.0 - shells_radiance(shells, p)[c]) * p * std::cos(u);
+    if (std::isinf(light_distance)) return 2 * share;
+    return share / (2 * light_distance * leg(light_distance, p));
+  };
+  double sum = 0.0;
+  for (size_t k = 1; k < ends.size(); ++k) sum += reference::integral(absorbed, ends[k - 1], ends[k], 1e-11);
+  return sum;
 }
 
 /// Power [W] by replicate, red, green and blue.
@@ -61,14 +84,16 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The ball as a mesh of 4 rings (rings - 1) facets with the ball's normals. Its poles stand askew to the axis of the
-/// light: or else a circle around that axis would meet all facets of a ring alike.
+/// Turns the poles of meshes away from the axis of the light: or else a circle around that axis would meet all facets of
+/// a ring alike.
+const glm::quat askew = glm::angleAxis(1.0f, glm::normalize(glm::vec3(1, 2, 3)));
+
+/// The ball as a mesh of 4 rings (rings - 1) facets with the ball's normals, askew.
 Scene mesh_ball_over_plane(double index, const Spectrum& sigma_a, double light_distance, int rings) {
   Scene scene = ball_over_plane(index, sigma_a, light_distance);
   Mesh mesh = mesh_ball({0, 0, 0}, 1.0, rings, 2 * rings, true, 0);
-  const glm::quat turn = glm::angleAxis(1.0f, glm::normalize(glm::vec3(1, 2, 3)));
   for (std::vector<glm::vec3>* vectors : {&mesh.positions, &mesh.normals})
-    for (glm::vec3& v : *vectors) v = turn * v;
+    for (glm::vec3& v : *vectors) v = askew * v;
   scene.shapes[0].geometry = std::move(mesh);
   scene.shapes[0].material = none;
   // An emissive mesh far aside, as good as dark: so the same kernels serve the panel.
@@ -124,6 +149,37 @@ class PhotonChecks {
                   channel + printed(", r < %g m", radii[k]));
       mesh_.add(extrapolated(coarse.stored[c], fine.stored[c]),
                 reference::encircled_flux(truth, infinity, reference::Orders::all), rounding, channel + ", all of the plane");
+    }
+  }
+
+  /// Glass with a liquid of index `n` in it, and ice in that, as spheres and as meshes of two sizes that touch.
+  void shells(double n, double light_distance) {
+    const std::vector<Shell> bodies = glass_liquid_ice(n);
+    const std::string what = printed("n = 1.5 around %g, around 1.31, light at %g m", n, light_distance);
+    const auto scene = [&] {
+      Scene empty = ball_over_plane(1.0, Spectrum(0.0), light_distance);
+      empty.shapes.erase(empty.shapes.begin());
+      return empty;
+    };
+    Scene spheres = scene();
+    uint32_t material = add_media(spheres, bodies);
+    for (const Shell& shell : bodies) add(spheres, Sphere{{0, 0, 0}, shell.radius}, material++);
+    const Landed exact = shoot(spheres, count_, {}, what);
+    const uint64_t seed = runs_;
+    const auto landed = [&](int rings) {
+      runs_ = seed;
+      Scene meshes = scene();
+      add_mesh_shells(meshes, bodies, rings, askew);
+      return shoot(meshes, mesh_count_, {}, what + ", meshes");
+    };
+    const Landed coarse = landed(fine_rings_ / 2), fine = landed(fine_rings_);
+    // Of the light that meets them.
+    const double lit = std::isinf(light_distance) ? 1.0 : 0.5 * (1 - leg(1.0, 1 / light_distance));
+    for (int c = 0; c < 3; ++c) {
+      const double truth = absorbed_by_shells(bodies, light_distance, c);
+      shells_.add(exact.absorbed[c], truth, rounding, what + printed(", channel %d", c));
+      mesh_shells_.add(extrapolated(coarse.absorbed[c], fine.absorbed[c]), truth,
+                       rounding + lit * facets_bound(fine_rings_, bodies), what + printed(", meshes, channel %d", c));
     }
   }
 
@@ -234,6 +290,8 @@ class PhotonChecks {
     if (!convergence_.lines.empty()) rows[rows.size() - 2].plots.push_back(convergence_);
     add(pool_, "photons/pool", "r = h tan + t tan theta_t by quadrature; I T tau / (h + t/n)^2", count_);
     add(mesh_, "photons/mesh ball", "the ball's: facets of two sizes, extrapolated by 1/n^2", mesh_count_);
+    add(shells_, "photons/shells", "1 - radiance of shells in a white surround, over the light's rays", count_);
+    add(mesh_shells_, "photons/mesh shells", "the shells': facets of two sizes, extrapolated by 1/n^2", mesh_count_);
     add(panel_, "photons/emissive mesh", "Lambert's polygon by quadrature; pi times the solid angle", mesh_count_);
     // The next term is of 1/n^3: it takes .2 off the order between 8 and 32 rings, and .03 between 32 and 128.
     const double order = -fitted_exponent(facets_);
@@ -248,7 +306,7 @@ class PhotonChecks {
   static constexpr std::array<double, 4> radii = {0.1, 0.2, 0.5, 1.0};
   static std::vector<double> all_radii() { return {radii.begin(), radii.end()}; }
   static constexpr double axis_radius = 0.15;
-  static constexpr double all_shots = 28;     // calls of shoot() by check_photons in full
+  static constexpr double all_shots = 34;     // calls of shoot() by check_photons in full
 
   /// Shoots all replicates and checks their balance, and that of all of them together.
   Landed shoot(Scene scene, uint64_t count, const std::vector<double>& within, const std::string& what) {
@@ -308,7 +366,7 @@ class PhotonChecks {
   int fine_rings_;
   Worst balance_;
   std::string where_;
-  Estimates branching_, absorbed_, reflected_, encircled_, mesh_, pool_, panel_;
+  Estimates branching_, absorbed_, reflected_, encircled_, mesh_, pool_, shells_, mesh_shells_, panel_;
   std::vector<std::pair<double, double>> facets_;
   Plot convergence_;
 };
@@ -328,6 +386,8 @@ std::vector<CheckResult> check_photons(const CheckContext& context) {
   checks.facets(1.5, {0.0, 0.5, 2.0}, context.full ? std::vector<int>{32, 64} : std::vector<int>{8, 16});
   checks.mesh(1.5, {0.0, 0.5, 2.0}, infinity);
   checks.mesh(1.5, {0.0, 0.5, 2.0}, 3.0);
+  checks.shells(1.333, infinity);
+  checks.shells(1.7, 1.5);
   checks.panel();
   if (!context.full) return checks.rows();
   checks.convergence();

@@ -39,7 +39,7 @@ TEST_CASE("verify passes, and its report holds what the table has") {
   CHECK(contains(run.out, " 0 failed"));
   const auto report = nlohmann::json::parse(file_bytes(json));
   CHECK(report["mode"] == "quick");
-  CHECK(report["checks"].size() == 28);
+  CHECK(report["checks"].size() == 30);
   for (const auto& check : report["checks"]) CHECK(check["passed"] == true);
   for (const auto& check : report["checks"]) CHECK_FALSE(check["kernel"].get<std::string>().empty());
   CHECK(contains(file_bytes(html), "<svg"));
@@ -56,10 +56,11 @@ TEST_CASE("verify catches a wrong formula and names the check") {
   // Surfaces in contact are met one by one, and facets show their own normals.
   check_caught({"trace_mesh.h", "SET_LANE(surface->contacts, uint, lane, contacts);",
                 "SET_LANE(surface->contacts, uint, lane, 0);"},
-               {"slab-and-ball"},
-               {"slab-and-ball/touching layers", "slab-and-ball/mesh shells", "slab-and-ball/mesh shells: facets"});
+               {"slab-and-ball", "photons"},
+               {"slab-and-ball/touching layers", "slab-and-ball/mesh shells", "slab-and-ball/mesh shells: facets",
+                "photons/mesh shells"});
   check_caught({"trace_mesh.h", "if (lane_dot3(n, geometric) > 1e-6f) shading = lane_normalize3(n);", ""},
-               {"slab-and-ball"}, {"slab-and-ball/mesh ball", "slab-and-ball/mesh shells: facets"});
+               {"slab-and-ball"}, {"slab-and-ball/mesh ball", "slab-and-ball/mesh ball: rim", "slab-and-ball/mesh shells: facets"});
 }
 
 TEST_CASE("every row that is a matter of chance sees 1 %") {
@@ -67,8 +68,9 @@ TEST_CASE("every row that is a matter of chance sees 1 %") {
   check_caught({"stages/photons.cl", "scale3(share, emission.power)", "scale3(1.01f * share, emission.power)"},
                {"photons", "density"},
                {"photons/absorbed in a ball", "photons/reflected by a ball", "photons/encircled flux", "photons/pool",
-                "photons/mesh ball", "photons/emissive mesh", "density/unbiased", "density/bias with radius",
-                "density/noise with count", "density/progressive: bias"});
+                "photons/mesh ball", "photons/shells", "photons/mesh shells", "photons/emissive mesh", "density/unbiased",
+                "density/bias with radius", "density/noise with count", "density/progressive: bias",
+                "density/patches: smooth light", "density/patches: flux"});
   check_caught({"gather_within.h", "(2.0f * 0.318309886183790672f * inverse_r2)", "(1.98f * 0.318309886183790672f * inverse_r2)"},
                {"density"},
                {"density/unbiased", "density/bias with radius", "density/noise with count", "density/progressive: bias"});

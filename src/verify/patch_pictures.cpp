@@ -1,0 +1,99 @@
+#include "verify/patch_pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/fit.hpp"
+#include "film/false_colour.hpp"
+#include "verify/caustic_plate.hpp"
+
+namespace vitrum {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A render of the caustics, drawn by area.
+RenderResult drawn(const CheckContext& context, Scene scene, uint64_t photons) {
+  scene.photons.estimate = PhotonEstimate::footprints;
+  scene.photons.count = photons;
+  scene.render.samples = 1;
+  RenderOptions options;
+  options.kernels = context.kernels;
+  options.views = {View::caustics};
+  return render(scene, context.device, options);
+}
+
+/// The light of a lamp through a ball of air, which is as if there were none: each pixel.
+CheckResult check_smooth_light(const CheckContext& context) {
+  constexpr double lamp_distance = 1.25, height = lamp_distance + 2.0;  // of the lamp above the ball's centre, the plane [m]
+  constexpr double cone = 2 * pi * (1.0 - 0.6);                         // of the directions that meet the ball [sr]
+  constexpr double eye_height = 0.9, half_width = 0.5;                  // under the ball; of the square it sees [m]
+  constexpr int size = 32;
+  const uint64_t photons = context.full ? 1u << 22 : 1u << 18;
+  Scene scene = ball_over_plane(1.0, {0.0, 0.5, 2.0}, lamp_distance);
+  const double fov = 2 * std::atan(half_width / eye_height) * 180 / pi;
+  scene.camera = {CameraType::pinhole, {0, -2 + eye_height, 0}, {0, -2, 0}, {0, 0, 1}, fov};
+  scene.film.width = scene.film.height = size;
+  const std::vector<double> radiance = drawn(context, scene, photons).film.mean("caustics");
+  Worst worst;
+  double largest_bound = 0.0;
+  std::string where;
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      constexpr int finer = 8;
+      double truth = 0.0;
+      const auto at = [](int k) { return half_width * (2 * (k + 0.5) / (size * finer) - 1); };
+      for (int y = row * finer; y < (row + 1) * finer; ++y)
+        for (int x = column * finer; x < (column + 1) * finer; ++x)
+          truth += height / (4 * pi) * std::pow(height * height + at(x) * at(x) + at(y) * at(y), -1.5) / (finer * finer);
+      const size_t pixel = static_cast<size_t>(row * size + column);
+      const double found = radiance[3 * pixel] * pi / 0.5, error = std::abs(found / truth - 1);
+      if (!(error <= worst.error)) where = printed("pixel (%d, %d): found %.9g, truth %.9g", column, row, found, truth);
+      worst.add(error, pixel);
+      // A triangle's light is even, and in sum what the truth has there: so it is off by what the truth changes by across.
+      const double r = half_width * std::numbers::sqrt2, s = std::sqrt(height * height + r * r);
+      const double cell = std::sqrt(cone / static_cast<double>(photons) * s * s * s / height);
+      largest_bound = 3 * r / (s * s) * 2 * std::numbers::sqrt2 * cell;
+    }
+  return {"density/patches: smooth light", worst.cases, worst.error, largest_bound, "relative", "I h/d^3, each pixel", where};
+}
+
+}  // namespace
+
+std::vector<CheckResult> check_patches(const CheckContext& context) {
+  std::vector<CheckResult> rows = {check_smooth_light(context)};
+  CheckResult flux{"density/patches: flux", 0, -1.0, 1.0, "of the border", "quadrature; half a step at the lattice's border is left out", ""};
+  CheckResult order{"density/patches: error", 0, -INFINITY, -0.55, "exponent", "the ball's irradiance by quadrature: photons^-.55 at least", ""};
+  Plot plot{"Irradiance of the default scene's caustic, drawn by area, one sample a pixel", "photons", "relative RMSE", {}, true, true};
+  for (const bool is_mesh : {false, true}) {
+    if (is_mesh && !context.full) continue;
+    const CausticPlate plate = is_mesh ? CausticPlate(360) : CausticPlate();
+    PlotLine line{is_mesh ? "ball of 516,960 triangles" : "exact ball", {}};
+    for (uint64_t photons = 1u << 12; photons <= (context.full ? 1u << 20 : 1u << 16); photons *= 4) {
+      const RenderResult result = drawn(context, plate.scene, photons);
+      line.points.emplace_back(static_cast<double>(photons), plate.error(result));
+      const std::vector<double> irradiance = CausticPlate::irradiance(result);
+      double found = 0.0, truth = 0.0;
+      for (size_t i = 0; i < irradiance.size(); ++i) found += irradiance[i], truth += plate.truth()[i];
+      // The ring of half a step around a disc of `photons` steps squared.
+      const double error = std::abs(found / truth - 1) / std::sqrt(pi / static_cast<double>(photons));
+      ++flux.cases;
+      if (error <= flux.worst) continue;
+      flux.worst = error;
+      flux.worst_input = line.name + printed(", %llu photons: %.6g of the flux", static_cast<unsigned long long>(photons), found / truth);
+    }
+    ++order.cases;
+    if (const double exponent = fitted_exponent(line.points); !(exponent <= order.worst)) {
+      order.worst = exponent;
+      order.worst_input = line.name;
+    }
+    plot.lines.push_back(line);
+  }
+  order.plots.push_back(plot);
+  rows.push_back(flux);
+  rows.push_back(order);
+  return rows;
+}
+
+}  // namespace vitrum
