@@ -54,7 +54,7 @@ typedef struct {
 
 // A kernel that shows what was drawn lists `PATCH_VIEW_PARAMETERS` and starts with `const PatchView view = PATCH_VIEW;`. The
 // host sets the arguments in the same order (src/render/patch_view.cpp).
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
 #define PATCH_VIEW_PARAMETERS , const ViewLayout view_layout, __global const float *view_planes, __global const float *spots
 #define PATCH_VIEW { view_layout, view_planes, spots }
 typedef struct {

@@ -39,11 +39,13 @@
 #define FOOTPRINT_FIELDS 14
 #define FOOTPRINT_CELL 15
 #define FOOTPRINT_ROW 16
-// and in a run:
+// Where patches are drawn (patch.h), in a run:
 #define ARRIVED_POINT 7        // uint: of the lattice of emission; NO_POINT: none
 #define ARRIVED_NORMAL 8       // 3 floats
 #define ARRIVED_SPACING 11     // how much farther than all photons those are apart that went its way by chance
-#define ARRIVED_FIELDS 12
+#define ARRIVED_CELL 12        // uint: of the grid, as PHOTON_CELL; for the sort
+#define ARRIVED_FIELDS 13
+#define ARRIVED_ROW 16
 #define NO_POINT 0xffffffffu
 // Where a point of the lattice arrived, at [LANDING_ROW * point]: its place (3 floats), and
 #define LANDING_WAY 3          // uint: hash of its way; 0: it did not arrive
@@ -60,6 +62,15 @@
 #define MAP_FIELDS PHOTON_FIELDS
 #define MAP_CELL PHOTON_CELL
 #define MAP_ROW PHOTON_ROW
+#endif
+#if HAS_PATCHES
+#define RUN_CELL ARRIVED_CELL
+#define RUN_FIELDS ARRIVED_FIELDS
+#define RUN_ROW ARRIVED_ROW
+#else
+#define RUN_CELL PHOTON_CELL
+#define RUN_FIELDS PHOTON_ROW
+#define RUN_ROW PHOTON_ROW
 #endif
 #endif
 
@@ -81,7 +92,7 @@ typedef struct {
 // sixteen, but at every fourth of a column, it is three. And there is room for a packet beyond, so that packets may be
 // written whole.
 FUNCTION uint photons_stride(uint run_length) { return 3u * run_length + 16u; }
-// `row`: PHOTON_ROW, or FOOTPRINT_ROW where there are footprints.
+// `row`: PHOTON_ROW, or ARRIVED_ROW where patches are drawn.
 FUNCTION ulong photon_in_run(uint run_length, uint run, uint field, uint row) {
   return ((ulong)run * row + field) * photons_stride(run_length);
 }

@@ -13,7 +13,7 @@ typedef struct {
   Float t_min;
   Uint stack, from, path;
   Uint history;                // surfaces met, and what has branched off
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   Uint point;                  // of the lattice of emission, or of those of branches; NO_POINT: none
   Uint branch_point;           // of the first lattice of branches; NO_POINT: what branches off here is left to others
   Uint way;                    // hash of what it met and did there: photons of one way are neighbours all along
@@ -72,7 +72,7 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   Uint outcome = OUTCOME_LOST;
   Vec3 next = direction;
   branched->alive = 0;
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   branched->point = NO_POINT;
   branched->spacing = photons->spacing;
 #endif
@@ -111,7 +111,7 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
       if (ANY(e.here & (first_two == 0)))
         u = first_two ? u : unit_float(hash_pair(photons->path, depth));
       const Mask may_branch = branches ? e.here & (is_last == 0) : (Mask)0;
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
       const Uint times = photons->history >> BRANCH_SHIFT & 3u;
       const Mask by_lattice = may_branch & (photons->point != NO_POINT) & (times < 2u);
       // Refracted as long as that is possible, so that neighbours part only where there is no light.
@@ -140,7 +140,7 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
         front_branched = (leaves & mostly_reflects) ? entering == 0 : front_branched;
         branched->stack = leaves ? (mostly_reflects ? (Uint)split.stack_refracted : (Uint)split.stack_reflected)
                                  : branched->stack;
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
         branched->spacing = leaves ? photons->spacing * (leaves_lattice ? (Float)BRANCH_STEP : 1.0f / sqrt(lesser))
                                    : branched->spacing;
         branched->point = leaves_lattice ? photons->branch_point + times * branch_points : branched->point;
@@ -148,7 +148,7 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
         branched->path = leaves ? hash_pair(photons->path, depth | HAS_BRANCHED) : branched->path;
         photons->history |= (leaves & (leaves_lattice == 0)) ? HAS_BRANCHED : (Uint)0;
       }
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
       photons->spacing = (e.here & drawn & (splits == 0)) ? photons->spacing / sqrt(lesser) : photons->spacing;
       photons->history += (by_lattice & (lesser > 0.0f)) ? (Uint)(1u << BRANCH_SHIFT) : (Uint)0;
 #endif
@@ -177,7 +177,7 @@ FUNCTION Uint interact(const Scene scene, const SurfacePacket* surface, const ui
   // Those that end keep the direction that they came from.
   photons->direction = next;
   photons->alive = alive & (outcome == OUTCOME_ALIVE);
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   branched->way = hash_pair(photons->way, surface->material << 1 | ((front_branched == entering) ? (Uint)1 : (Uint)0));
   photons->way = hash_pair(photons->way, surface->material << 1 | ((front == entering) ? (Uint)1 : (Uint)0));
   branched->branch_point = NO_POINT;

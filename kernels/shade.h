@@ -12,7 +12,7 @@ typedef struct {
   Uint media;                  // stack
   Uint from;                   // what a ray leaves (surface.h)
   Uint path;                   // random bits
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   Float x, y;                  // of those from the eye: in the pixel, from 0 to 1
 #endif
   Mask active;

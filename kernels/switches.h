@@ -35,6 +35,9 @@
 #ifndef CAUSTICS
 #error "CAUSTICS: one of CAUSTICS_..."
 #endif
+#ifndef HAS_PATCHES
+#error "HAS_PATCHES: 1 if what photons light is drawn where it is seen directly; they are on lattices, then"
+#endif
 #ifndef CAMERA_STACK
 #error "CAMERA_STACK: packets of camera rays that may wait, at least the greatest depth and one more"
 #endif

@@ -27,7 +27,7 @@ FUNCTION CameraRays camera_rays(__global const CameraData* camera, __global cons
   CameraRays rays;
   rays.rays.origin = uniform3(camera->eye);
   rays.rays.direction = direction_through(camera, TO_FLOAT(AS_INT(column)) + jx, TO_FLOAT(AS_INT(row)) + jy);
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   rays.x = jx;
   rays.y = jy;
 #endif
@@ -103,7 +103,7 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, 
 #endif
   Vec3 beauty = load_film3(film, FILM_BEAUTY, film_stride, i);
   Float cut = LOAD(film, FILM_CUT * film_stride + i);
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   const ShownPlane shown = plane_shown(view, pixels);
   const Uint row = pixels / camera_data->width;
   const Uint column = pixels - row * camera_data->width;
@@ -132,7 +132,7 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, 
       Mask gathers = map.count > 0 ? receives & within_reach(&map, surface.position) : (Mask)0;
       Mask lit = gathers;
       Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
       if (camera.depth == 0) {
         const Vec3 outward = surface.geometric_normal;
         const Vec3 normal = select3(surface.entering, outward, negate3(outward));

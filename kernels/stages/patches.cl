@@ -334,7 +334,7 @@ KERNEL void project_patches(__global const CameraData* camera, const uint detail
   if (i >= n_runs) return;
   const uint run = first_run + i;
   project_run(camera, (float)detail, runs[run].photons[OUTCOME_STORED], run_length,
-              photons + photon_in_run(run_length, run, 0, FOOTPRINT_ROW), landings, lattice, limits,
+              photons + photon_in_run(run_length, run, 0, RUN_ROW), landings, lattice, limits,
               rows + (ulong)i * PATCH_ROW * patches_stride(run_length), boxes + 4u * i * patch_boxes(run_length),
               &reports[i]);
 }

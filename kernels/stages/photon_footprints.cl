@@ -100,7 +100,7 @@ KERNEL void count_footprints(const uint n_runs, const uint run_length, const Lat
                              __global PhotonRunData* reports) {
   const uint run = get_global_id(0);
   if (run < n_runs)
-    spread_run(reports[run].photons[OUTCOME_STORED], run_length, photons + photon_in_run(run_length, run, 0, FOOTPRINT_ROW),
+    spread_run(reports[run].photons[OUTCOME_STORED], run_length, photons + photon_in_run(run_length, run, 0, RUN_ROW),
                landings, lattice, limits, grid, buckets, counts + run * buckets, 0, &reports[run]);
 }
 
@@ -110,6 +110,6 @@ KERNEL void place_footprints(const uint n_runs, const uint run_length, const Lat
                              __global PhotonRunData* reports, __global float* rows) {
   const uint run = get_global_id(0);
   if (run < n_runs)
-    spread_run(reports[run].photons[OUTCOME_STORED], run_length, photons + photon_in_run(run_length, run, 0, FOOTPRINT_ROW),
+    spread_run(reports[run].photons[OUTCOME_STORED], run_length, photons + photon_in_run(run_length, run, 0, RUN_ROW),
                landings, lattice, limits, grid, buckets, places + run * buckets, rows, &reports[run]);
 }

@@ -11,14 +11,14 @@
 BODY move_run(const uint stored, const uint run_length, const uint bucket_shift, __global const float* restrict fields,
               __global uint* restrict places, __global float8* restrict rows) {
   const uint stride = photons_stride(run_length);
-  __global const float* cells = fields + PHOTON_CELL * stride;
+  __global const float* cells = fields + RUN_CELL * stride;
   const uint ahead = 32;
   for (uint i = 0; i < stored; ++i) {
     // The caches wait for a line in every other bucket.
     if (i + ahead < stored) PREFETCH_TO_WRITE(rows + places[as_uint(cells[i + ahead]) >> bucket_shift]);
     const float8 photon = (float8)(fields[i], fields[stride + i], fields[2 * stride + i], fields[3 * stride + i],
                                    fields[4 * stride + i], fields[5 * stride + i], fields[6 * stride + i],
-                                   fields[7 * stride + i]);
+                                   fields[RUN_CELL * stride + i]);
     rows[places[as_uint(photon.s7) >> bucket_shift]++] = photon;
   }
 }
@@ -30,7 +30,7 @@ KERNEL void sort_into_buckets(const uint n_runs, const uint run_length, const ui
   const uint run = get_global_id(0);
   if (run < n_runs)
     move_run(reports[run].photons[OUTCOME_STORED], run_length, bucket_shift,
-             photons + photon_in_run(run_length, run, 0, PHOTON_ROW), places + run * buckets, rows);
+             photons + photon_in_run(run_length, run, 0, RUN_ROW), places + run * buckets, rows);
 }
 
 #endif

@@ -50,7 +50,7 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   Float u[2];
   u[0] = sequence_float(&sequences[0], first);
   u[1] = sequence_float(&sequences[1], first);
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   const Uint point = LANES + first;
   if (lattice.columns > 0) lattice_point(lattice, point, u);
 #endif
@@ -64,7 +64,7 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   photons.from = light->shape;
   photons.path = sequence_bits(&sequences[2], first);
   photons.history = 0;
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   photons.point = lattice.columns > 0 ? point : (Uint)NO_POINT;
   photons.branch_point = NO_POINT;
   if (lattice.columns > 0) {
@@ -83,7 +83,7 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
 // Photons that wait for a packet of their own: field f of the k-th at [f][k]. A packet is emitted only while fewer than
 // WIDTH wait in either queue. One that is taken puts no more back than it had, and as many that branch off, which do not
 // branch again: so less than 4 WIDTH wait in both. On a lattice six may come of one in four, of others two: less than 15 WIDTH.
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
 #define WAITING_FIELDS 18
 #define WAITING_ROOM (16 * WIDTH)
 #else
@@ -113,7 +113,7 @@ FUNCTION void wait_in(Waiting* waiting, const Photons* photons, const Mask which
     waiting->fields[11][k] = as_float(LANE(photons->from, uint, lane));
     waiting->fields[12][k] = as_float(LANE(photons->path, uint, lane));
     waiting->fields[13][k] = as_float(LANE(photons->history, uint, lane));
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
     waiting->fields[14][k] = as_float(LANE(photons->point, uint, lane));
     waiting->fields[15][k] = as_float(LANE(photons->way, uint, lane));
     waiting->fields[16][k] = LANE(photons->spacing, float, lane);
@@ -138,7 +138,7 @@ FUNCTION Photons take_waiting(Waiting* waiting) {
   photons.from = AS_UINT(LOAD(waiting->fields[11], k));
   photons.path = AS_UINT(LOAD(waiting->fields[12], k));
   photons.history = AS_UINT(LOAD(waiting->fields[13], k));
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   photons.point = AS_UINT(LOAD(waiting->fields[14], k));
   photons.way = AS_UINT(LOAD(waiting->fields[15], k));
   photons.spacing = LOAD(waiting->fields[16], k);
@@ -154,9 +154,7 @@ FUNCTION Mask are_numbers(const Photons* photons, const Vec3 arrived) {
   return fabs(sum.x + sum.y + sum.z) < INFINITY;
 }
 
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
-#define RUN_FIELDS ARRIVED_FIELDS
-
+#if HAS_PATCHES
 // Notes where photons of the lattice arrived, for their neighbours.
 FUNCTION void note_landings(const Photons* photons, const Mask which, __global float* landings) {
   FOR_LANES(lane, which & (photons->point != NO_POINT)) {
@@ -165,8 +163,6 @@ FUNCTION void note_landings(const Photons* photons, const Mask which, __global f
     vstore8(joined4(arrival, brought), LANE(photons->point, uint, lane), landings);
   }
 }
-#else
-#define RUN_FIELDS PHOTON_ROW
 #endif
 
 // Adds the lanes of `which` to the run's photons, of which there are `stored`. `fields`: the run's piece of the buffer.
@@ -180,16 +176,15 @@ FUNCTION void store_photons(const Photons* photons, const SurfacePacket* surface
   values[PHOTON_POWER + 0] = photons->power.x;
   values[PHOTON_POWER + 1] = photons->power.y;
   values[PHOTON_POWER + 2] = photons->power.z;
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
   const Vec3 normal = select3(surface->entering, surface->geometric_normal, negate3(surface->geometric_normal));
   values[ARRIVED_POINT] = AS_FLOAT(photons->point);
   values[ARRIVED_NORMAL + 0] = normal.x;
   values[ARRIVED_NORMAL + 1] = normal.y;
   values[ARRIVED_NORMAL + 2] = normal.z;
   values[ARRIVED_SPACING] = photons->spacing;
-#else
-  values[PHOTON_CELL] = AS_FLOAT(cells_of(grid, photons->origin));
 #endif
+  values[RUN_CELL] = AS_FLOAT(cells_of(grid, photons->origin));
   __global float* to = fields + stored;
   const uint stride = photons_stride(run_length);
 #if PACKS_LANES
@@ -242,7 +237,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     } else {
       photons = emitted(scene, light, casters, n_casters, caster, sequences, share, upstream, lattice, next, &aim, &aimed);
       photons.alive = lanes_below(next, last);
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
       // A way that no photon has, until it arrives.
       FOR_LANES(lane, photons.alive & (photons.point != NO_POINT)) {
         landings[LANDING_ROW * LANE(photons.point, uint, lane) + LANDING_WAY] = as_float(0u);
@@ -286,7 +281,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
         add_power(&power[k], here, photons.power);
         ended[k] += here ? (Uint)1 : (Uint)0;
         if (k == OUTCOME_STORED) {
-#if CAUSTICS == CAUSTICS_FOOTPRINTS
+#if HAS_PATCHES
           note_landings(&photons, here, landings);
 #endif
           store_photons(&photons, &surface, arrived, here, grid, run_length, stored, fields);
@@ -311,7 +306,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
     } while (n_alive > WIDTH / 2);
   }
 
-#if defined(CLEAR_DEAD_LANES) && CAUSTICS == CAUSTICS_FOOTPRINTS
+#if defined(CLEAR_DEAD_LANES) && HAS_PATCHES
   // Those who read the run take whole packets.
   for (uint lane = 0; lane < WIDTH; ++lane)
     for (uint field = 0; field < RUN_FIELDS; ++field) fields[field * photons_stride(run_length) + stored + lane] = 0.0f;
@@ -337,7 +332,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
 
 #if CAUSTICS != CAUSTICS_FOOTPRINTS
   for (uint bucket = 0; bucket < buckets; ++bucket) counts[bucket] = 0;
-  __global const float* cells = fields + PHOTON_CELL * photons_stride(run_length);
+  __global const float* cells = fields + RUN_CELL * photons_stride(run_length);
   for (uint i = 0; i < stored; ++i) ++counts[as_uint(cells[i]) >> grid.bucket_shift];
 #endif
 }
@@ -356,5 +351,5 @@ KERNEL void photons(SCENE_PARAMETERS, __global const CasterData* casters, const 
   const Scene scene = SCENE;
   follow_run(scene, &scene.lights[light_index], casters, n_casters, caster, sequences, share, upstream, lattice, first,
              min(first + run_length, count), run_length, max_depth, grid, buckets, landings,
-             photons + photon_in_run(run_length, run, 0, MAP_ROW), counts + run * buckets, &reports[run]);
+             photons + photon_in_run(run_length, run, 0, RUN_ROW), counts + run * buckets, &reports[run]);
 }

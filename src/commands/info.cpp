@@ -98,17 +98,20 @@ void run_info(const SceneArguments& arguments) {
   const double pixels = static_cast<double>(scene.film.width) * scene.film.height;
   std::printf(", film %.3f MiB", pixels * FILM_PLANES * sizeof(float) / 0x1p20);
   if (features.caustics) {
-    // Of one pass: as stored and in rows of the sort; or in a tree, with a node to seven leaves or nodes of eight photons. With
-    // footprints, room for twice as many that branch off, what neighbours tell each other, and about nine entries each, several
-    // times as many where light is focussed in one place and spread in another.
-    const double floats = features.footprints ? (3.0 + 9.0) * FOOTPRINT_ROW + 1.5 * LANDING_ROW
-                                              : PHOTON_ROW + (features.nearest_photons ? PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0
-                                                                                       : double{PHOTON_ROW});
+    // Of one pass: as stored and in rows of the sort; or in a tree, with a node to seven leaves or nodes of eight photons; of
+    // footprints about nine entries each, several times as many where light is focussed in one place and spread in another.
+    const double floats = features.footprints        ? 9.0 * FOOTPRINT_ROW
+                          : features.nearest_photons ? PHOTON_ROW + PHOTON_FIELDS + PHOTON_NODE_ROWS / 7.0
+                                                     : 2.0 * PHOTON_ROW;
     double photons = by_rounds ? static_cast<double>(photons_in_memory)
                                : std::ceil(static_cast<double>(scene.photons.count) / scene.render.passes);
-    if (features.footprints) photons = std::min(photons, static_cast<double>(most_footprints));
+    const double on_lattice = std::min(photons, static_cast<double>(largest_lattice));
+    if (features.footprints) photons = on_lattice;
     std::printf(", photon map %s %.1f MiB", features.footprints ? "about" : "up to",
                 photons * (sizeof(float) * floats) / 0x1p20);
+    // With room for twice as many that branch off, and what neighbours tell each other.
+    if (features.patches)
+      std::printf(", photons in flight up to %.1f MiB", on_lattice * sizeof(float) * (3.0 * ARRIVED_ROW + 1.5 * LANDING_ROW) / 0x1p20);
   }
   std::printf("\n");
 }

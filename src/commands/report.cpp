@@ -82,6 +82,7 @@ const char* name_of(PhotonEstimate estimate) {
     case PhotonEstimate::fixed_radius: return "radius";
     case PhotonEstimate::nearest: return "nearest";
     case PhotonEstimate::footprints: return "footprints";
+    case PhotonEstimate::patches: return "patches";
   }
   return "";
 }

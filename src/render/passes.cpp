@@ -48,7 +48,7 @@ Passes::Passes(const KernelContext& context, DeviceScene& device_scene, const st
       camera_(context, is_among(View::albedo, views) || is_among(View::normal, views) || is_among(View::depth, views)) {
   if (!context.features.caustics) return;
   photons_ = std::make_unique<PhotonPass>(context);
-  if (context.features.footprints) {
+  if (context.features.patches) {
     const CpuTimer timer(cpu_seconds_["camera"]);
     patches_ = std::make_unique<PatchView>(context);
   }

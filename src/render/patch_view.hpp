@@ -10,7 +10,7 @@ struct PhotonRuns;
 /// Which pixels show one plane, and the irradiance that the photons of a pass throw on it there. Keeps its buffers.
 class PatchView {
  public:
-  /// Looks at the scene. Features must have footprints.
+  /// Looks at the scene. Features must have patches.
   explicit PatchView(const KernelContext& context);
 
   /// Whether each pixel shows one plain plane, so that nothing else wants photons.

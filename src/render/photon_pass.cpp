@@ -61,6 +61,11 @@ double aimed_flux(const SceneData& data, const kernel::LightData& light, const k
   return power * fraction * (light.kind == LIGHT_POINT ? 1.0 : 2.0);
 }
 
+/// Photons of a lattice that the device has room for.
+uint64_t most_on_lattice(const Device& device) {
+  return std::min(device.info().max_allocation / (4 * ARRIVED_ROW * sizeof(float)), largest_lattice);
+}
+
 }  // namespace
 
 struct PhotonPass::State {
@@ -98,7 +103,7 @@ struct PhotonPass::State {
     kernel = context.kernels.get("photons");
     // A GPU wants many work-items.
     runs.length = device.info().is_cpu ? 1024 : 64;
-    runs.row = context.features.footprints ? FOOTPRINT_ROW : PHOTON_ROW;
+    runs.row = context.features.patches ? ARRIVED_ROW : PHOTON_ROW;
   }
 
   /// Makes room for passes of `count` photons.
@@ -106,12 +111,13 @@ struct PhotonPass::State {
     if (count <= room) return;
     room = count;
     Device& device = context.device;
-    // Footprints want all photons of a pair at once.
-    const bool footprints = context.features.footprints;
-    const uint64_t at_once = std::max<uint64_t>(footprints ? room : context.launches.photons, pilot_size(room));
+    // A lattice wants all of its photons at once.
+    const bool lattices = context.features.patches;
+    const uint64_t on_lattice = std::min(room, most_on_lattice(device));
+    const uint64_t at_once = std::max<uint64_t>({lattices ? on_lattice : 0, context.launches.photons, pilot_size(room)});
     const auto needed = static_cast<uint32_t>((at_once + runs.length - 1) / runs.length);
-    if (runs.landings.size() == 0 || footprints)
-      runs.landings = device.allocate<float>(footprints ? LANDING_ROW * (room + room / 2) : 1, "photons in flight");
+    if (runs.landings.size() == 0 || lattices)
+      runs.landings = device.allocate<float>(lattices ? LANDING_ROW * (on_lattice + on_lattice / 2) : 1, "photons in flight");
     if (needed <= most_runs) return;
     most_runs = needed;
     runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0, runs.row), "photons in flight");
@@ -126,7 +132,7 @@ struct PhotonPass::State {
   /// The lattice of about `n` photons of a pair in a pass; none for lights with an area, independent photons, or so few that
   /// all would be at its edge.
   kernel::LatticeData lattice_of(uint32_t number, uint64_t pass, uint32_t replicate, uint64_t n) const {
-    if (!context.features.footprints || n < 64 || context.scene.photons.sampling == Sampling::independent ||
+    if (!context.features.patches || n < 64 || context.scene.photons.sampling == Sampling::independent ||
         context.data.lights[pairs[number].light].kind > LIGHT_DIRECTIONAL)
       return {};
     const auto log2_rows = static_cast<uint32_t>(std::lround(0.5 * std::log2(static_cast<double>(n))));
@@ -210,42 +216,74 @@ struct PhotonPass::State {
     return photons;
   }
 
+  /// Emits the photons of a pass, those of lights and casters that have one on lattices or not, pair by pair. After each launch
+  /// `take()` finds them in `runs`.
+  template <typename Take>
+  void emit(const PhotonPassPlan& plan, bool on_lattices, const Take& take) {
+    const uint32_t buckets = context.features.nearest_photons ? 1 : grid.buckets();
+    for (uint32_t p = 0; p < pairs.size(); ++p) {
+      const uint64_t wanted = std::max<uint64_t>(1, share(pairs[p], plan.count));
+      const uint64_t n_before = plan.before == 0 ? 0 : share(pairs[p], plan.before);
+      // As many lattices of one size as memory wants.
+      const uint64_t most = most_on_lattice(context.device), lattices = (wanted + most - 1) / most;
+      const auto lattice = [&](uint64_t k) {
+        if (!on_lattices) return kernel::LatticeData{};
+        return lattice_of(p, plan.pass * lattices + k, plan.replicate, wanted / lattices);
+      };
+      runs.lattice = lattice(0);
+      const uint64_t on_lattice = uint64_t{runs.lattice.columns} << runs.lattice.log2_rows;
+      const uint64_t n = on_lattice > 0 ? lattices * on_lattice : wanted;
+      const uint64_t most_in_launch = on_lattice > 0 ? on_lattice : context.launches.photons;
+      for (uint64_t first = 0; first < n;) {
+        if (on_lattice > 0) runs.lattice = lattice(first / on_lattice);
+        const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(most_in_launch, n - first));
+        shoot(p, plan.replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n), grid.grid(), buckets, runs.lattice);
+        take();
+        first += in_launch;
+      }
+    }
+  }
+
   /// A pass; `maps`: into the map. Returns false if the view could not take it.
   bool run(const PhotonPassPlan& plan, PatchView* view, bool maps, const std::function<void(double)>& progress) {
-    const bool nearest = context.features.nearest_photons;
+    const bool nearest = context.features.nearest_photons, footprints = context.features.footprints;
     if (!nearest) start_grid(plan);
-    if (view) view->start();
     for (const kernel::LightData& light : context.data.lights) balance.not_aimed += total_power(context.data, light);
-    std::vector<cl_float8> photons;  // for the tree
+    // What is gathered within a radius wants photons of its own, of equal power: of those on lattices the few that branch off
+    // have much of it. They are then those that are told of.
+    const bool twice = view && maps && !footprints;
     uint64_t emitted = 0;
+    const auto tell = [&] {
+      for (const kernel::PhotonRunData& run : runs.reports) emitted += run.photons[OUTCOME_ALIVE];
+      progress(static_cast<double>(emitted) / static_cast<double>(plan.count * (twice ? 2 : 1)));
+    };
     bool is_whole = true;
-    for (uint32_t p = 0; p < pairs.size(); ++p) {
-      uint64_t n = std::max<uint64_t>(1, share(pairs[p], plan.count));
-      const uint64_t n_before = plan.before == 0 ? 0 : share(pairs[p], plan.before);
-      runs.lattice = lattice_of(p, plan.pass, plan.replicate, n);
-      if (runs.lattice.columns > 0) n = uint64_t{runs.lattice.columns} << runs.lattice.log2_rows;
-      const uint64_t most_in_launch = context.features.footprints ? n : context.launches.photons;
-      for (uint64_t first = 0; first < n;) {
-        const uint32_t in_launch = static_cast<uint32_t>(std::min<uint64_t>(most_in_launch, n - first));
-        shoot(p, plan.replicate, n_before + first, in_launch, 1.0 / static_cast<double>(n), grid.grid(),
-              nearest ? 1 : grid.buckets(), runs.lattice);
-        for (const kernel::PhotonRunData& run : runs.reports) book(run);
+    if (view || footprints) {
+      if (view) view->start();
+      emit(plan, true, [&] {
+        for (const kernel::PhotonRunData& run : runs.reports)
+          if (twice) balance.surfaces_met += run.surfaces;
+          else book(run);
         if (view) is_whole &= view->add(runs, grid.footprint_limits());
+        if (maps && footprints) grid.add(runs);
+        tell();
+      });
+    }
+    if (maps && !footprints) {
+      std::vector<cl_float8> photons;  // for the tree
+      emit(plan, false, [&] {
+        for (const kernel::PhotonRunData& run : runs.reports) book(run);
         if (nearest) {
           const std::vector<cl_float8> stored = photons_of_runs();
           photons.insert(photons.end(), stored.begin(), stored.end());
-        } else if (maps) {
+        } else {
           grid.add(runs);
         }
-        first += in_launch;
-        emitted += in_launch;
-        progress(static_cast<double>(emitted) / static_cast<double>(plan.count));
-      }
+        tell();
+      });
+      if (nearest) fill_photon_tree(context.device, tree, photons, context.scene.photons.max_radius);
     }
-    if (nearest)
-      fill_photon_tree(context.device, tree, photons, context.scene.photons.max_radius);
-    else if (maps)
-      grid.finish();
+    if (maps && !nearest) grid.finish();
     return is_whole;
   }
 
@@ -275,8 +313,8 @@ PhotonPass::PhotonPass(const KernelContext& context) : state_(new State(context)
 PhotonPass::~PhotonPass() = default;
 
 uint64_t PhotonPass::capacity(const Device& device, const Features& features) {
-  constexpr uint64_t waiting = 4 * FOOTPRINT_ROW * sizeof(float);  // of a photon and what branches off, with some to spare
-  if (features.footprints) return std::min(uint64_t{device.info().max_allocation} / waiting, most_footprints);
+  // Of footprints a pass has one lattice, since smaller ones are what more photons are for.
+  if (features.footprints) return most_on_lattice(device);
   // A photon takes a row of one array, with some to spare; half of the memory may go to it. Offsets in it fit 32 bits.
   constexpr double row = largest_row_share * PHOTON_ROW * sizeof(float);
   const double bytes = static_cast<double>(std::min(device.info().max_allocation, device.info().memory / 2));

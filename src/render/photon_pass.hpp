@@ -29,7 +29,7 @@ struct PhotonBalance {
 /// What a launch of photons leaves, run by run (kernels/photon_map.h).
 struct PhotonRuns {
   uint32_t length = 0;                      ///< of a run
-  uint32_t row = PHOTON_ROW;                ///< floats of a photon; FOOTPRINT_ROW with footprints, and then:
+  uint32_t row = PHOTON_ROW;                ///< floats of a photon; ARRIVED_ROW where patches are drawn, and then:
   kernel::LatticeData lattice{};
   Buffer<float> landings;                   ///< of the lattice's points
   Buffer<float> photons;
@@ -62,8 +62,8 @@ std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map);
 /// Sets a kernel's PHOTON_MAP_PARAMETERS (kernels/gather.h) from argument `first` on; returns the next argument's index.
 unsigned set_map_arguments(cl::Kernel& kernel, unsigned first, const PhotonMap& map, const Scene& scene);
 
-/// Photons of a pass with footprints, which all wait in memory until their neighbours are known.
-inline constexpr uint64_t most_footprints = 1u << 20;
+/// Photons of the largest lattice; they all wait in memory until their neighbours are known.
+inline constexpr uint64_t largest_lattice = 1u << 20;
 
 /// What a pass is to do.
 struct PhotonPassPlan {
@@ -86,7 +86,7 @@ class PhotonPass {
   /// Photons that a single pass can hold on this device.
   static uint64_t capacity(const Device& device, const Features& features);
 
-  /// Emits the photons of a pass; passes come one after the other. `view`: takes them in too, where there are footprints and
+  /// Emits the photons of a pass; passes come one after the other. `view`: takes them in too, where patches are drawn and
   /// a picture is made. `wants_map`: if not, and the view shows all that is lit, no map is made. Reports the fraction done.
   void run(const PhotonPassPlan& plan, PatchView* view, bool wants_map, const std::function<void(double)>& progress);
 

@@ -113,9 +113,9 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     if (wants(view) && scene.render.samples < 2 && !scene.render.by_rounds())
       throw Error({std::string("--view ") + view_name(view)}, "one sample a pixel has no scatter",
                   "take at least --samples 2; 8 and their multiples tell the error best");
-  if (wants(View::bias) && (features.nearest_photons || features.footprints))
+  if (wants(View::bias) && (features.nearest_photons || features.patches))
     throw Error({"--view bias"},
-                printed("the bias of %s is not known", features.footprints ? "footprints" : "the k nearest photons"),
+                printed("the bias of %s is not known", features.footprints ? "footprints" : features.patches ? "patches" : "the k nearest photons"),
                 "take photons.estimate \"automatic\" or \"radius\"");
   const SceneData data = scene_data(scene, features);
   Tree tree;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "core/printed.hpp"
 #include "scene/bodies.hpp"
@@ -108,6 +109,13 @@ Features scene_features(const Scene& scene) {
   f.lights = scene.render.lights && !scene.lights.empty();
   f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;
   f.footprints = f.caustics && scene.photons.estimate == PhotonEstimate::footprints;
+  // Lights with an area have no lattice, and so no patches.
+  const bool has_lattices = scene.photons.sampling == Sampling::low_discrepancy &&
+                            std::all_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+                              return std::holds_alternative<PointLight>(light.emitter) ||
+                                     std::holds_alternative<DirectionalLight>(light.emitter);
+                            });
+  f.patches = f.footprints || (f.caustics && has_lattices && scene.photons.estimate == PhotonEstimate::patches);
   f.nearest_photons = f.caustics && scene.photons.estimate == PhotonEstimate::nearest;
   if (f.dielectric) f.constant_reflectance = scene.render.constant_reflectance;
   f.max_depth = static_cast<unsigned>(scene.render.max_depth);
@@ -124,7 +132,7 @@ std::string Features::build_options() const {
                          : footprints    ? "CAUSTICS_FOOTPRINTS"
                          : caustics      ? "CAUSTICS_WITHIN"
                                          : "CAUSTICS_NONE") +
-                        " -DCAMERA_STACK=" + std::to_string(std::max(32u, std::bit_ceil(max_depth + 1))) +
+                        on("HAS_PATCHES", patches) + " -DCAMERA_STACK=" + std::to_string(std::max(32u, std::bit_ceil(max_depth + 1))) +
                         " -DLIGHT_KINDS=" + std::to_string(light_kinds);
   if (constant_reflectance) options += printed(" -DCONSTANT_REFLECTANCE=%.9ef", *constant_reflectance);
   return options;
@@ -146,6 +154,7 @@ std::string Features::names() const {
   add(lights, "direct light");
   add(caustics, "caustics");
   add(footprints, "footprints");
+  add(patches, "patches");
   add(nearest_photons, "nearest photons");
   return text.empty() ? "none" : text;
 }
@@ -161,7 +170,7 @@ std::vector<std::string> photon_stages_for(const Features& f) {
 std::vector<std::string> stages_for(const Features& f) {
   std::vector<std::string> stages = photon_stages_for(f);
   stages.insert(stages.begin(), "camera");
-  if (f.footprints) stages.insert(stages.end(), {"patches", "patch_drawing"});
+  if (f.patches) stages.insert(stages.end(), {"patches", "patch_drawing"});
   return stages;
 }
 

@@ -21,6 +21,7 @@ struct Features {
   bool lights = false;          ///< direct light is computed
   bool caustics = false;        ///< photons are traced and gathered
   bool footprints = false;      ///< photons in the map have footprints
+  bool patches = false;         ///< caustics that are seen directly are drawn by area, from photons on lattices
   bool nearest_photons = false; ///< the k nearest are gathered, not those within a fixed radius
   unsigned max_depth = 1;       ///< of camera rays
   unsigned light_kinds = 0;     ///< bit set, 1 << LIGHT_... of kernels/types.h

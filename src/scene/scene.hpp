@@ -182,7 +182,7 @@ struct FilmSettings {
 // ---------------------------------------------------------------------------------------------- settings
 
 enum class Sampling { independent, low_discrepancy };
-enum class PhotonEstimate { automatic, fixed_radius, nearest, footprints };
+enum class PhotonEstimate { automatic, fixed_radius, nearest, footprints, patches };
 
 struct RenderSettings {
   int samples = 16;                         ///< per pixel; 1 is the pixel's centre
@@ -212,8 +212,8 @@ struct PhotonSettings {
   Sampling sampling = Sampling::low_discrepancy;
   PhotonEstimate estimate = PhotonEstimate::automatic;
   double radius = 0.01;                     ///< for fixed_radius [m]
-  int nearest = 50;                         ///< k for nearest, at most most_nearest_photons; photons aimed at per estimate for automatic;
-                                            ///< for footprints, within a cell of their map
+  int nearest = 50;                         ///< k for nearest, at most most_nearest_photons; photons aimed at per estimate for
+                                            ///< automatic and patches; for footprints, within a cell of their map
   double max_radius = 1.0;                  ///< for nearest [m]
   bool progressive = false;                 ///< the radius shrinks from pass to pass; for automatic and fixed_radius
   int max_depth = 20;                       ///< surfaces that a photon may meet

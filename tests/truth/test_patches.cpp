@@ -94,6 +94,27 @@ TEST_CASE("patches: floor, wall and step each take their own light, as those do 
   CHECK(patches.rays.gathered > 0);
 }
 
+TEST_CASE("patches with a radius beside them: each pixel is what footprints draw there, or what a radius gathers") {
+  Device device;
+  const Scene scene = corner({0.9, 1.1, 2.2}, {0.15, 0.2, 0});
+  const RenderResult both = caustics_of(scene, 100'000, 1, PhotonEstimate::patches, device);
+  const std::vector<double> found = both.film.mean("caustics");
+  const std::vector<double> drawn = caustics_of(scene, 100'000, 1, PhotonEstimate::footprints, device).film.mean("caustics");
+  const std::vector<double> gathered = caustics_of(scene, 100'000, 1, PhotonEstimate::automatic, device).film.mean("caustics");
+  size_t as_drawn = 0, as_gathered = 0, neither = 0;
+  for (size_t i = 0; i < found.size(); i += 3) {
+    const auto is_like = [&](const std::vector<double>& other) { return std::equal(&found[i], &found[i] + 3, &other[i]); };
+    if (is_like(drawn) && is_like(gathered)) continue;  // dark
+    ++(is_like(drawn) ? as_drawn : is_like(gathered) ? as_gathered : neither);
+  }
+  MESSAGE(as_drawn << " pixels drawn, " << as_gathered << " gathered");
+  CHECK(as_drawn > 2000);
+  CHECK(as_gathered > 200);
+  CHECK(neither == 0);
+  // Photons are told of once: of both sets, those that are gathered.
+  CHECK(both.photons.photons_shot == 100'000);
+}
+
 TEST_CASE("patches: those that reach from the view behind the eye are cut") {
   Device device;
   // The eye is just above the floor, in the midst of the light that the mirror ball scatters.
