@@ -214,10 +214,6 @@ BODY project_run(__global const CameraData* camera, const float detail, const ui
       }
 
       const Vec3 corners[4] = {place, side[0].place, opposite, side[2].place};
-      const Vec3 sum = add3(add3(power, side[0].power), add3(opposite_power, side[2].power));
-      values[PATCH_POWER + 0] = 0.25f * sum.x;
-      values[PATCH_POWER + 1] = 0.25f * sum.y;
-      values[PATCH_POWER + 2] = 0.25f * sum.z;
       // By what of the light each triangle is, by area of the disc of emission, of which a point stands for pi over their number.
       const Float u0 = lies.step * TO_FLOAT(AS_INT(lies.column));
       const Float v0 = lies.step * TO_FLOAT(AS_INT(lies.row));
@@ -225,6 +221,11 @@ BODY project_run(__global const CameraData* camera, const float detail, const ui
       const DiscPlace p_u = place_in_disc(lattice, u0 + lies.step, v0);
       const DiscPlace p_uv = place_in_disc(lattice, u0 + lies.step, v0 + lies.step);
       const DiscPlace p_v = place_in_disc(lattice, u0, v0 + lies.step);
+      const Vec3 sum = add3(add3(scale3(1.0f / p.weight, power), scale3(1.0f / p_u.weight, side[0].power)),
+                            add3(scale3(1.0f / p_uv.weight, opposite_power), scale3(1.0f / p_v.weight, side[2].power)));
+      values[PATCH_POWER + 0] = 0.25f * sum.x;
+      values[PATCH_POWER + 1] = 0.25f * sum.y;
+      values[PATCH_POWER + 2] = 0.25f * sum.z;
       const Float x = p_uv.x - p.x;
       const Float y = p_uv.y - p.y;
       const Float each = 0.318309886f * (float)lattice_points(lattice) / (lies.step * lies.step);
