@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace vitrum {
 namespace {
@@ -11,6 +12,13 @@ namespace {
 constexpr double least_exponent = 0.25, most_exponent = 1.0, exponent_step = 0.05;
 constexpr double usual_exponent = 0.65, exponent_deviation = 0.2;
 constexpr double model_deviation = 0.1;  // of a squared difference: one exponent for a whole picture is a rough law
+
+/// Mean of a value that is not negative, of which `found` is known with a normal deviation: what is not known counts.
+double mean_if_positive(double found, double deviation) {
+  const double z = std::max(found / deviation, -5.0);
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi), share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+  return deviation * (z + density / share);
+}
 
 /// With a given exponent.
 struct Fit {
@@ -34,7 +42,7 @@ Fit fit_with(double exponent, std::span<const BiasStep> steps, std::span<const d
     products += step.square * change(step) / variance(step);
     norms += change(step) * change(step) / variance(step);
   }
-  const double first = std::max(products / norms, 0.0), deviation = 1.0 / std::sqrt(norms);
+  const double found = products / norms, first = std::max(found, 0.0), deviation = 1.0 / std::sqrt(norms);
   Fit fit;
   fit.exponent = exponent;
   fit.misfit = std::pow((exponent - usual_exponent) / exponent_deviation, 2.0);
@@ -45,7 +53,7 @@ Fit fit_with(double exponent, std::span<const BiasStep> steps, std::span<const d
     all += weights[i];
   }
   const double share = sum / all * (sum / all);
-  fit.bias = {share * first, share * std::max(first - 2.0 * deviation, 0.0), share * (first + 2.0 * deviation), exponent};
+  fit.bias = {share * mean_if_positive(found, deviation), share * std::max(first - 2.0 * deviation, 0.0), share * (first + 2.0 * deviation), exponent};
   return fit;
 }
 

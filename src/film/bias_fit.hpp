@@ -14,7 +14,8 @@ struct BiasStep {
   double deviation = 0.0;       ///< of `square`, by noise; > 0
 };
 
-/// Squared bias of a picture with parts of several areas: estimated, and the range it lies in.
+/// Squared bias of a picture with parts of several areas: its mean where it is known with a normal deviation and is not
+/// negative, so that what is hidden in noise counts; and the range it lies in.
 struct SquaredBias {
   double value = 0.0, low = 0.0, high = 0.0;
   double exponent = 0.0;        ///< of the bias with the area
