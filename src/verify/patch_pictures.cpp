@@ -59,10 +59,34 @@ CheckResult check_smooth_light(const CheckContext& context) {
   return {"density/patches: smooth light", worst.cases, worst.error, largest_bound, "relative", "I h/d^3, each pixel", where};
 }
 
+/// What grazes the default scene's ball and lands around its shadow: of all that lands there the outermost points of the
+/// lattice tell.
+CheckResult check_grazing_light(const CheckContext& context) {
+  constexpr double shadow = 0.75, outer = 1.0;  // radii of a ring [m]
+  CausticPlate plate;
+  const double eye_height = plate.scene.camera.eye.y;
+  plate.scene.camera.vertical_fov = 2 * std::atan(outer / eye_height) * 180 / pi;
+  const std::vector<double> truth =
+      reference::irradiance_picture(reference::default_scene_ball(), CausticPlate::power, outer, CausticPlate::size, CausticPlate::size);
+  const std::vector<double> found = CausticPlate::irradiance(drawn(context, plate.scene, context.full ? 1u << 20 : 1u << 18));
+  const auto within = [](double r) { return reference::disc_mask(outer, CausticPlate::size, CausticPlate::size, r); };
+  const std::vector<bool> inner = within(shadow), all = within(outer);
+  double sum = 0.0, sum_of_truth = 0.0;
+  uint64_t pixels = 0;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    if (inner[i] || !all[i]) continue;
+    sum += found[i];
+    sum_of_truth += truth[i];
+    ++pixels;
+  }
+  return {"density/patches: grazing light", pixels, std::abs(sum / sum_of_truth - 1), 0.05, "relative", "quadrature: flux around the ball's shadow",
+          printed("%.6g of the flux", sum / sum_of_truth)};
+}
+
 }  // namespace
 
 std::vector<CheckResult> check_patches(const CheckContext& context) {
-  std::vector<CheckResult> rows = {check_smooth_light(context)};
+  std::vector<CheckResult> rows = {check_smooth_light(context), check_grazing_light(context)};
   CheckResult flux{"density/patches: flux", 0, -1.0, 1.0, "of the border", "quadrature; half a step at the lattice's border is left out", ""};
   CheckResult order{"density/patches: error", 0, -INFINITY, -0.55, "exponent", "the ball's irradiance by quadrature: photons^-.55 at least", ""};
   Plot plot{"Irradiance of the default scene's caustic, drawn by area, one sample a pixel", "photons", "relative RMSE", {}, true, true};
