@@ -50,20 +50,16 @@ FUNCTION Photons emitted(const Scene scene, __global const LightData* light, __g
   Float u[2];
   u[0] = sequence_float(&sequences[0], first);
   u[1] = sequence_float(&sequences[1], first);
+  Float weight = 1.0f;
 #if HAS_PATCHES
   const Uint point = LANES + first;
-  Float weight = 1.0f;
   if (lattice.columns > 0) weight = lattice_point(lattice, point, u);
 #endif
   const Emission emission = emit(light, casters, n_casters, caster, from, aim, u, upstream);
   Photons photons;
   photons.origin = emission.origin;
   photons.direction = emission.direction;
-#if HAS_PATCHES
   photons.power = scale3(share * weight, emission.power);
-#else
-  photons.power = scale3(share, emission.power);
-#endif
   photons.t_min = light->clearance;
   photons.stack = light->media;
   photons.from = light->shape;

@@ -29,6 +29,7 @@ std::vector<Case> plates(bool quick) {
   const auto add_case = [&](const char* name, const CausticPlate& plate) {
     cases.push_back({name, plate.scene, [plate](const RenderResult& result) { return plate.error(result); },
                      {"beauty", 1, {plate.truth().begin(), plate.truth().end()}}});
+    cases.back().scene.photons.estimate = PhotonEstimate::automatic_radius;
   };
   const auto add_footprints = [&](const char* name, const CausticPlate& plate) {
     add_case(name, plate);

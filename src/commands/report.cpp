@@ -79,10 +79,10 @@ const char* name_of(Sampling sampling) {
 const char* name_of(PhotonEstimate estimate) {
   switch (estimate) {
     case PhotonEstimate::automatic: return "automatic";
+    case PhotonEstimate::automatic_radius: return "automatic_radius";
     case PhotonEstimate::fixed_radius: return "radius";
     case PhotonEstimate::nearest: return "nearest";
     case PhotonEstimate::footprints: return "footprints";
-    case PhotonEstimate::patches: return "patches";
   }
   return "";
 }

@@ -103,8 +103,7 @@ double RenderResult::photons_in_estimate() const {
 RenderResult render(const Scene& scene, Device& device, const RenderOptions& options) {
   RenderResult result;
   const auto start = std::chrono::steady_clock::now();
-  const Features features = result.features = scene_features(scene);
-  note("features: " + features.names());
+  Features features = scene_features(scene);
 
   const auto wants = [&](View view) {
     return std::find(options.views.begin(), options.views.end(), view) != options.views.end();
@@ -113,10 +112,14 @@ RenderResult render(const Scene& scene, Device& device, const RenderOptions& opt
     if (wants(view) && scene.render.samples < 2 && !scene.render.by_rounds())
       throw Error({std::string("--view ") + view_name(view)}, "one sample a pixel has no scatter",
                   "take at least --samples 2; 8 and their multiples tell the error best");
-  if (wants(View::bias) && (features.nearest_photons || features.patches))
+  if (wants(View::bias) && (features.nearest_photons || features.footprints))
     throw Error({"--view bias"},
-                printed("the bias of %s is not known", features.footprints ? "footprints" : features.patches ? "patches" : "the k nearest photons"),
+                printed("the bias of %s is not known", features.footprints ? "footprints" : "the k nearest photons"),
                 "take photons.estimate \"automatic\" or \"radius\"");
+  // The bias is that of a radius, and told where one is.
+  if (wants(View::bias)) features.patches = false;
+  result.features = features;
+  note("features: " + features.names());
   const SceneData data = scene_data(scene, features);
   Tree tree;
   if (features.mesh) tree = build_tree(data.tree_triangles);

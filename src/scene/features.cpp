@@ -109,13 +109,16 @@ Features scene_features(const Scene& scene) {
   f.lights = scene.render.lights && !scene.lights.empty();
   f.caustics = scene.render.caustics && specular_surface && !scene.lights.empty() && scene.photons.count > 0;
   f.footprints = f.caustics && scene.photons.estimate == PhotonEstimate::footprints;
-  // Lights with an area have no lattice, and so no patches.
-  const bool has_lattices = scene.photons.sampling == Sampling::low_discrepancy &&
+  // Lights with an area have no lattice; and patches are no part of a radius that shrinks from pass to pass, or is chosen
+  // round by round.
+  const PhotonSettings& photons = scene.photons;
+  const bool has_lattices = photons.sampling == Sampling::low_discrepancy &&
                             std::all_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
                               return std::holds_alternative<PointLight>(light.emitter) ||
                                      std::holds_alternative<DirectionalLight>(light.emitter);
                             });
-  f.patches = f.footprints || (f.caustics && has_lattices && scene.photons.estimate == PhotonEstimate::patches);
+  f.patches = f.footprints || (f.caustics && has_lattices && photons.estimate == PhotonEstimate::automatic &&
+                               !photons.progressive && !scene.render.by_rounds());
   f.nearest_photons = f.caustics && scene.photons.estimate == PhotonEstimate::nearest;
   if (f.dielectric) f.constant_reflectance = scene.render.constant_reflectance;
   f.max_depth = static_cast<unsigned>(scene.render.max_depth);

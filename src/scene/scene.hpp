@@ -182,7 +182,7 @@ struct FilmSettings {
 // ---------------------------------------------------------------------------------------------- settings
 
 enum class Sampling { independent, low_discrepancy };
-enum class PhotonEstimate { automatic, fixed_radius, nearest, footprints, patches };
+enum class PhotonEstimate { automatic, automatic_radius, fixed_radius, nearest, footprints };
 
 struct RenderSettings {
   int samples = 16;                         ///< per pixel; 1 is the pixel's centre
@@ -213,9 +213,9 @@ struct PhotonSettings {
   PhotonEstimate estimate = PhotonEstimate::automatic;
   double radius = 0.01;                     ///< for fixed_radius [m]
   int nearest = 50;                         ///< k for nearest, at most most_nearest_photons; photons aimed at per estimate for
-                                            ///< automatic and patches; for footprints, within a cell of their map
+                                            ///< automatic radii; for footprints, within a cell of their map
   double max_radius = 1.0;                  ///< for nearest [m]
-  bool progressive = false;                 ///< the radius shrinks from pass to pass; for automatic and fixed_radius
+  bool progressive = false;                 ///< the radius shrinks from pass to pass; for automatic and fixed radii
   int max_depth = 20;                       ///< surfaces that a photon may meet
 };
 

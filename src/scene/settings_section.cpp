@@ -48,10 +48,10 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
   table.choice("sampling", settings.sampling, samplings);
   table.choice("estimate", settings.estimate,
                {{"automatic", PhotonEstimate::automatic},
+                {"automatic_radius", PhotonEstimate::automatic_radius},
                 {"radius", PhotonEstimate::fixed_radius},
                 {"nearest", PhotonEstimate::nearest},
-                {"footprints", PhotonEstimate::footprints},
-                {"patches", PhotonEstimate::patches}});
+                {"footprints", PhotonEstimate::footprints}});
   table.length("radius", settings.radius, positive_length, context.metres_per_unit);
   table.integer("nearest", settings.nearest, 1, 1 << 20);
   if (settings.estimate == PhotonEstimate::nearest && settings.nearest > most_nearest_photons)
@@ -65,15 +65,10 @@ PhotonSettings read_photon_settings(const TomlTable& table, const FileContext& c
   if (settings.progressive && settings.estimate == PhotonEstimate::footprints)
     table.fail("progressive", "needs a radius that can shrink, which footprints do not have",
                "leave it out: footprints shrink as photons.count grows");
-  if (settings.progressive && settings.estimate == PhotonEstimate::patches)
-    table.fail("progressive", "needs a radius that can shrink, which patches do not have",
-               "leave it out: patches shrink as photons.count grows");
   if (render.by_rounds()) {
     const std::string problem = std::string("does not go with render.") + (render.target_error > 0.0 ? "target_error" : "time_limit");
-    if (settings.estimate != PhotonEstimate::automatic && settings.estimate != PhotonEstimate::footprints)
-      table.fail("estimate", problem + (settings.estimate == PhotonEstimate::patches
-                                            ? ": what is gathered beside the patches has a bias that is not told"
-                                            : ": its error does not fall with the number of photons"),
+    if (settings.estimate == PhotonEstimate::fixed_radius || settings.estimate == PhotonEstimate::nearest)
+      table.fail("estimate", problem + ": its error does not fall with the number of photons",
                  "use photons.estimate = \"automatic\" or \"footprints\" with it");
     if (settings.progressive)
       table.fail("progressive", problem + ", which lets the radius shrink as the error wants it", "leave it out");

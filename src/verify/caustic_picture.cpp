@@ -31,7 +31,7 @@ CheckResult check_caustic_picture(const CheckContext& context) {
       scene.photons.count = count;
       // The caustic is finer than pixels; what is drawn is the mean over each.
       scene.render.samples = line == &drawn ? 1 : 256;
-      if (line == &drawn) scene.photons.estimate = PhotonEstimate::footprints;
+      scene.photons.estimate = line == &drawn ? PhotonEstimate::automatic : PhotonEstimate::automatic_radius;
       if (line == &nearest) {
         scene.photons.estimate = PhotonEstimate::nearest;
         scene.photons.max_radius = 0.1;

@@ -141,7 +141,8 @@ double relative_rms(const std::vector<double>& a, const std::vector<double>& b) 
 void compare_pictures(const CheckContext& context, std::vector<CheckResult>& rows) {
   for (NamedScene& s : switch_scenes(context.full ? 256 : 48, context.full ? 1'000'000 : 50'000)) {
     // The automatic radius hangs on a few photons, and all of the picture on the radius.
-    if (s.scene.photons.estimate == PhotonEstimate::automatic) s.scene.photons.estimate = PhotonEstimate::fixed_radius;
+    PhotonEstimate& estimate = s.scene.photons.estimate;
+    if (estimate == PhotonEstimate::automatic || estimate == PhotonEstimate::automatic_radius) estimate = PhotonEstimate::fixed_radius;
     s.scene.photons.radius = 0.03;
     RenderOptions options;
     options.kernels = context.kernels;

@@ -15,7 +15,7 @@ constexpr double pi = std::numbers::pi;
 
 /// A render of the caustics, drawn by area.
 RenderResult drawn(const CheckContext& context, Scene scene, uint64_t photons) {
-  scene.photons.estimate = PhotonEstimate::footprints;
+  scene.photons.estimate = PhotonEstimate::automatic;
   scene.photons.count = photons;
   scene.render.samples = 1;
   RenderOptions options;

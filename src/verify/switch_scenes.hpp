@@ -128,7 +128,7 @@ inline std::vector<NamedScene> switch_scenes(int size, uint64_t photons) {
           {"a bare floor", bare_floor(size)},
           {"mirrors", mirrors(size, photons)},
           {"constant reflectance", constant_reflectance(size, photons)},
-          {"everything, radius", everything(size, photons, PhotonEstimate::automatic)},
+          {"everything, radius", everything(size, photons, PhotonEstimate::automatic_radius)},
           {"everything, footprints", everything(size, photons, PhotonEstimate::footprints)},
           {"everything, nearest", everything(size, photons, PhotonEstimate::nearest)}};
 }

@@ -59,7 +59,7 @@ TEST_CASE("a NaN on the film is counted and told of, and its pixel keeps the oth
 }
 
 TEST_CASE("photons whose power or place is no number are counted and told of, and not stored") {
-  const std::string power = "  photons.power = scale3(share, emission.power);";
+  const std::string power = "  photons.power = scale3(share * weight, emission.power);";
   const std::string place = "        if (k == OUTCOME_STORED) {\n          const Mask sound";
   const BrokenKernels powers("stages/photons.cl", power,
                              power + "\n  photons.power.x = (first + LANES) % 100 == (Uint)7 ? (Float)NAN : photons.power.x;");

@@ -65,7 +65,7 @@ TEST_CASE("verify catches a wrong formula and names the check") {
 
 TEST_CASE("every row that is a matter of chance sees 1 %") {
   // Of a photon's power, of the irradiance that is gathered, and of that by a lamp.
-  check_caught({"stages/photons.cl", "scale3(share, emission.power)", "scale3(1.01f * share, emission.power)"},
+  check_caught({"stages/photons.cl", "scale3(share * weight, emission.power)", "scale3(1.01f * share * weight, emission.power)"},
                {"photons", "density"},
                {"photons/absorbed in a ball", "photons/reflected by a ball", "photons/encircled flux", "photons/pool",
                 "photons/mesh ball", "photons/shells", "photons/mesh shells", "photons/emissive mesh", "density/unbiased",

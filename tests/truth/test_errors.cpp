@@ -224,6 +224,7 @@ TEST_CASE("an automatic radius takes in as many of all photons, whatever the pas
   Scene scene = ball_over_plane(1.0);
   scene.lights.push_back({"sun", {}, DirectionalLight{{0, -1, 0}, Spectrum(3.0)}});
   scene.render.samples = 8;
+  scene.photons.estimate = PhotonEstimate::automatic_radius;
   scene.photons.count = 200'000;
   const RenderResult one = rendered(scene, device, {View::beauty});
   const RenderResult eight = rendered(scene, device, {View::beauty, View::error});

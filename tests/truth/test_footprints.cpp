@@ -45,7 +45,7 @@ TEST_CASE("footprints: 16,384 photons tell the caustic of a ball, exact and as a
     const RenderResult with = caustics_of(plate.scene, 16384, 64, PhotonEstimate::footprints, device);
     Scene sharp = plate.scene;
     sharp.photons.nearest = 5;  // what serves a radius best
-    const RenderResult without = caustics_of(sharp, 16384, 64, PhotonEstimate::automatic, device);
+    const RenderResult without = caustics_of(sharp, 16384, 64, PhotonEstimate::automatic_radius, device);
     MESSAGE("errors " << plate.error(with) << " and " << plate.error(without) << ", flux " << flux_ratio(plate, with));
     CHECK(plate.error(with) < 0.09);
     CHECK(plate.error(with) < 0.4 * plate.error(without));

@@ -97,10 +97,10 @@ TEST_CASE("patches: floor, wall and step each take their own light, as those do 
 TEST_CASE("patches with a radius beside them: each pixel is what footprints draw there, or what a radius gathers") {
   Device device;
   const Scene scene = corner({0.9, 1.1, 2.2}, {0.15, 0.2, 0});
-  const RenderResult both = caustics_of(scene, 100'000, 1, PhotonEstimate::patches, device);
+  const RenderResult both = caustics_of(scene, 100'000, 1, PhotonEstimate::automatic, device);
   const std::vector<double> found = both.film.mean("caustics");
   const std::vector<double> drawn = caustics_of(scene, 100'000, 1, PhotonEstimate::footprints, device).film.mean("caustics");
-  const std::vector<double> gathered = caustics_of(scene, 100'000, 1, PhotonEstimate::automatic, device).film.mean("caustics");
+  const std::vector<double> gathered = caustics_of(scene, 100'000, 1, PhotonEstimate::automatic_radius, device).film.mean("caustics");
   size_t as_drawn = 0, as_gathered = 0, neither = 0;
   for (size_t i = 0; i < found.size(); i += 3) {
     const auto is_like = [&](const std::vector<double>& other) { return std::equal(&found[i], &found[i] + 3, &other[i]); };

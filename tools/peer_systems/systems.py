@@ -233,7 +233,7 @@ def all_systems(folder, scratch, program):
                (VitrumLine("footprints", {"ball": photons(10), "mesh": photons(10)},
                            ("--set", "photons.estimate=footprints"), samples=1),
                 VitrumLine("automatic radius", {"ball": photons(12), "mesh": photons(11)},
-                           ("--set", "photons.estimate=automatic"))),
+                           ("--set", "photons.estimate=automatic_radius"))),
                ("mesh_ball.py",), program=program),
         Mitsuba("mitsuba", "Mitsuba", "Integrator `ptracer`, variant `llvm_ad_rgb`, box filter, the rest by default.",
                 (Line("ptracer", {"ball": (64, 256, 1024, 4096), "mesh": (64, 256, 1024, 2048)}),),
