@@ -239,14 +239,14 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
       photons = emitted(scene, light, casters, n_casters, caster, sequences, share, upstream, lattice, next, &aim, &aimed);
       photons.alive = lanes_below(next, last);
 #if HAS_PATCHES
-      // A way that no photon has, until it arrives.
+      // A way that no photon has, until it arrives; its place is read, but counts for nothing.
       FOR_LANES(lane, photons.alive & (photons.point != NO_POINT)) {
-        landings[LANDING_ROW * LANE(photons.point, uint, lane) + LANDING_WAY] = as_float(0u);
+        vstore8((float8)(0.0f), LANE(photons.point, uint, lane), landings);
       }
       FOR_LANES(lane, photons.alive & (photons.branch_point != NO_POINT)) {
         const uint branch = LANE(photons.branch_point, uint, lane);
-        landings[LANDING_ROW * branch + LANDING_WAY] = as_float(0u);
-        landings[LANDING_ROW * (branch + n_branch_points) + LANDING_WAY] = as_float(0u);
+        vstore8((float8)(0.0f), branch, landings);
+        vstore8((float8)(0.0f), branch + n_branch_points, landings);
       }
 #endif
       add_power(&power[OUTCOME_ALIVE], photons.alive, photons.power);
