@@ -15,7 +15,7 @@
 //
 // Towards the rim points lie ever closer, and have ever less power. There light grazes a ball, and where it goes changes as
 // the square root of the distance from the rim, which that evens out: else all that is reflected beside a ball's shadow
-// comes from the outermost points, and the error of its caustic is three times as large.
+// comes from the outermost points, and the error of its caustic is two to three times as large.
 typedef struct {
   Mask wide;                   // in the wedges about the x axis
   Float radius;                // less than 0: on the other side

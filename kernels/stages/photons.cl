@@ -1,6 +1,6 @@
 // Stage photons: a pair of light and caster shoots photons, which are followed to their end.
 // Reads: the scene, the casters, the sequences. Writes: for each run of photons its stored ones, its PhotonRunData, and how
-// many of them are in each bucket of the grid or, with footprints, where the points of the lattice landed.
+// many of them are in each bucket of the grid; where patches are drawn, where the points of the lattice landed.
 // A work-item minds one run: WIDTH photons at a time, in registers from the light to where they end. The few that go
 // other ways than most wait until they fill a packet of their own, so that lanes rarely idle.
 #include "emission.h"
@@ -339,7 +339,7 @@ BODY follow_run(const Scene scene, __global const LightData* light, __global con
 }
 
 // The first `count` photons of the sequences, `run_length` to a run. `share`: of the pair's power for each photon;
-// `upstream`: see emission.h. landings: with footprints, room for each point of the lattice.
+// `upstream`: see emission.h. landings: where patches are drawn, room for each point of the lattice.
 KERNEL void photons(SCENE_PARAMETERS, __global const CasterData* casters, const uint n_casters,
                     __global const SequenceData* sequences, const uint light_index, const uint caster,
                     const float share, const float upstream, const LatticeData lattice, const uint count,

@@ -44,7 +44,7 @@ class PhotonGrid {
 
   /// How large footprints may be in the pass.
   kernel::FootprintLimits footprint_limits() const;
-  /// Takes in the photons of a launch; with footprints, of all launches of a pair of light and caster.
+  /// Takes in the photons of a launch; with footprints, all of a lattice.
   void add(const PhotonRuns& runs);
   /// Sorts what was taken in.
   void finish();

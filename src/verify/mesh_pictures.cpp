@@ -27,12 +27,6 @@ constexpr double rim_begins = 0.9;
 
 const Spectrum absorption(0.1, 0.5, 2.0);
 
-uint32_t add_medium(Scene& scene, double index, const Spectrum& sigma_a, int priority = 0) {
-  scene.materials.push_back(glass(index, 0, priority));
-  scene.materials.back().absorption = sigma_a;
-  return static_cast<uint32_t>(scene.materials.size() - 1);
-}
-
 /// A white surround, seen from outside of what will stand around the origin. Behind the eye two boxes of air touch,
 /// which absorb as good as nothing: so the same kernels serve all pictures of meshes.
 Scene surround(int size) {

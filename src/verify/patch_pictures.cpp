@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "core/fit.hpp"
-#include "film/false_colour.hpp"
 #include "verify/caustic_plate.hpp"
 
 namespace vitrum {
@@ -36,8 +35,11 @@ CheckResult check_smooth_light(const CheckContext& context) {
   scene.camera = {CameraType::pinhole, {0, -2 + eye_height, 0}, {0, -2, 0}, {0, 0, 1}, fov};
   scene.film.width = scene.film.height = size;
   const std::vector<double> radiance = drawn(context, scene, photons).film.mean("caustics");
+  // A triangle's light is even, and in sum what the truth has there: so it is off by what the truth changes by across.
+  const double r = half_width * std::numbers::sqrt2, s = std::sqrt(height * height + r * r);
+  const double cell = std::sqrt(cone / static_cast<double>(photons) * s * s * s / height);
+  const double bound = 3 * r / (s * s) * 2 * std::numbers::sqrt2 * cell;
   Worst worst;
-  double largest_bound = 0.0;
   std::string where;
   for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column) {
@@ -51,12 +53,8 @@ CheckResult check_smooth_light(const CheckContext& context) {
       const double found = radiance[3 * pixel] * pi / 0.5, error = std::abs(found / truth - 1);
       if (!(error <= worst.error)) where = printed("pixel (%d, %d): found %.9g, truth %.9g", column, row, found, truth);
       worst.add(error, pixel);
-      // A triangle's light is even, and in sum what the truth has there: so it is off by what the truth changes by across.
-      const double r = half_width * std::numbers::sqrt2, s = std::sqrt(height * height + r * r);
-      const double cell = std::sqrt(cone / static_cast<double>(photons) * s * s * s / height);
-      largest_bound = 3 * r / (s * s) * 2 * std::numbers::sqrt2 * cell;
     }
-  return {"density/patches: smooth light", worst.cases, worst.error, largest_bound, "relative", "I h/d^3, each pixel", where};
+  return {"density/patches: smooth light", worst.cases, worst.error, bound, "relative", "I h/d^3, each pixel", where};
 }
 
 /// What grazes the default scene's ball and lands around its shadow: of all that lands there the outermost points of the
@@ -87,7 +85,8 @@ CheckResult check_grazing_light(const CheckContext& context) {
 
 std::vector<CheckResult> check_patches(const CheckContext& context) {
   std::vector<CheckResult> rows = {check_smooth_light(context), check_grazing_light(context)};
-  CheckResult flux{"density/patches: flux", 0, -1.0, 1.0, "of the border", "quadrature; half a step at the lattice's border is left out", ""};
+  Worst flux;
+  std::string flux_where;
   CheckResult order{"density/patches: error", 0, -INFINITY, -0.55, "exponent", "the ball's irradiance by quadrature: photons^-.55 at least", ""};
   Plot plot{"Irradiance of the default scene's caustic, drawn by area, one sample a pixel", "photons", "relative RMSE", {}, true, true};
   for (const bool is_mesh : {false, true}) {
@@ -102,21 +101,23 @@ std::vector<CheckResult> check_patches(const CheckContext& context) {
       for (size_t i = 0; i < irradiance.size(); ++i) found += irradiance[i], truth += plate.truth()[i];
       // The ring of half a step around a disc of `photons` steps squared.
       const double error = std::abs(found / truth - 1) / std::sqrt(pi / static_cast<double>(photons));
-      ++flux.cases;
-      if (error <= flux.worst) continue;
-      flux.worst = error;
-      flux.worst_input = line.name + printed(", %llu photons: %.6g of the flux", static_cast<unsigned long long>(photons), found / truth);
+      if (!(error <= flux.error)) flux_where = line.name + printed(", %llu photons: %.6g of the flux", static_cast<unsigned long long>(photons), found / truth);
+      flux.add(error, flux.cases);
     }
     ++order.cases;
-    if (const double exponent = fitted_exponent(line.points); !(exponent <= order.worst)) {
+    const double fitted = fitted_exponent(line.points), exponent = std::isnan(fitted) ? INFINITY : fitted;
+    if (exponent > order.worst) {
       order.worst = exponent;
       order.worst_input = line.name;
     }
     plot.lines.push_back(line);
   }
   order.plots.push_back(plot);
-  rows.push_back(flux);
+  rows.push_back({"density/patches: flux", flux.cases, flux.error, 1.0, "of the border",
+                  "quadrature; half a step at the lattice's border is left out", flux_where});
   rows.push_back(order);
+  for (CheckResult& row : rows)
+    row.kernel = "stages/photons.cl: photons, stages/patches.cl: project_patches, stages/patch_drawing.cl: draw_patches";
   return rows;
 }
 

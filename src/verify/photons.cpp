@@ -91,10 +91,7 @@ const glm::quat askew = glm::angleAxis(1.0f, glm::normalize(glm::vec3(1, 2, 3)))
 /// The ball as a mesh of 4 rings (rings - 1) facets with the ball's normals, askew.
 Scene mesh_ball_over_plane(double index, const Spectrum& sigma_a, double light_distance, int rings) {
   Scene scene = ball_over_plane(index, sigma_a, light_distance);
-  Mesh mesh = mesh_ball({0, 0, 0}, 1.0, rings, 2 * rings, true, 0);
-  for (std::vector<glm::vec3>* vectors : {&mesh.positions, &mesh.normals})
-    for (glm::vec3& v : *vectors) v = askew * v;
-  scene.shapes[0].geometry = std::move(mesh);
+  scene.shapes[0].geometry = turned(mesh_ball({0, 0, 0}, 1.0, rings, 2 * rings, true, 0), askew);
   scene.shapes[0].material = none;
   // An emissive mesh far aside, as good as dark: so the same kernels serve the panel.
   add_panel(scene, panel_corner + glm::dvec3(20, 0, 0), panel_u, panel_v, 1, 1e-30);
@@ -162,8 +159,8 @@ class PhotonChecks {
       return empty;
     };
     Scene spheres = scene();
-    uint32_t material = add_media(spheres, bodies);
-    for (const Shell& shell : bodies) add(spheres, Sphere{{0, 0, 0}, shell.radius}, material++);
+    for (const Shell& shell : bodies)
+      add(spheres, Sphere{{0, 0, 0}, shell.radius}, add_medium(spheres, shell.index, shell.sigma_a));
     const Landed exact = shoot(spheres, count_, {}, what);
     const uint64_t seed = runs_;
     const auto landed = [&](int rings) {

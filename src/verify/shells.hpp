@@ -16,14 +16,18 @@ inline std::vector<Shell> glass_liquid_ice(double n) {
   return {{1.0, 1.5, {0.1, 0.5, 2.0}}, {0.8, n, {0.5, 0.3, 0.1}}, {0.4, 1.31, {0.5, 1.0, 0.2}}};
 }
 
-/// Adds the media of `shells` as materials of one priority, so that the inner one fills its place. Returns the first.
-inline uint32_t add_media(Scene& scene, const std::vector<Shell>& shells) {
-  const auto first = static_cast<uint32_t>(scene.materials.size());
-  for (const Shell& shell : shells) {
-    scene.materials.push_back(glass(shell.index));
-    scene.materials.back().absorption = shell.sigma_a;
-  }
-  return first;
+/// Adds a medium as a material; returns its number.
+inline uint32_t add_medium(Scene& scene, double index, const Spectrum& sigma_a, int priority = 0) {
+  scene.materials.push_back(glass(index, 0, priority));
+  scene.materials.back().absorption = sigma_a;
+  return static_cast<uint32_t>(scene.materials.size() - 1);
+}
+
+/// A mesh with its normals, turned about the origin.
+inline Mesh turned(Mesh mesh, const glm::quat& turn) {
+  for (std::vector<glm::vec3>* vectors : {&mesh.positions, &mesh.normals})
+    for (glm::vec3& v : *vectors) v = turn * v;
+  return mesh;
 }
 
 /// A ball with a hole: the faces of `hole` turned inside out. Both with normals.
@@ -46,13 +50,10 @@ inline Mesh hollowed(Mesh ball, const Mesh& hole) {
 /// hole which the second fills up to the very corners of the wall, each further one floats in the one before it.
 /// `turn` turns all of them.
 inline void add_mesh_shells(Scene& scene, const std::vector<Shell>& shells, int rings, const glm::quat& turn = {1, 0, 0, 0}) {
-  const uint32_t first = add_media(scene, shells);
   std::vector<Mesh> balls;
   for (const Shell& shell : shells) {
-    const auto material = first + static_cast<uint32_t>(balls.size());
-    Mesh& ball = balls.emplace_back(mesh_ball({0, 0, 0}, shell.radius, rings, 2 * rings, true, material));
-    for (std::vector<glm::vec3>* vectors : {&ball.positions, &ball.normals})
-      for (glm::vec3& v : *vectors) v = turn * v;
+    const uint32_t material = add_medium(scene, shell.index, shell.sigma_a);
+    balls.push_back(turned(mesh_ball({0, 0, 0}, shell.radius, rings, 2 * rings, true, material), turn));
   }
   if (balls.size() > 1) balls[0] = hollowed(balls[0], balls[1]);
   for (Mesh& ball : balls) add(scene, std::move(ball));
