@@ -205,6 +205,17 @@ JOINING(2, 4)
 JOINING(4, 8)
 JOINING(8, 16)
 
+// v.hi, which oclgrind 21.10 takes for a vector that nobody wrote.
+FUNCTION float8 upper8(const float16 v) {
+#ifdef SIMULATED
+  float8 upper;
+  for (uint k = 0; k < 8; ++k) ((float*)&upper)[k] = ((const float*)&v)[8 + k];
+  return upper;
+#else
+  return v.hi;
+#endif
+}
+
 // One lane of a Vec3.
 #define LANE3(v, lane) ((float3)(LANE((v).x, float, lane), LANE((v).y, float, lane), LANE((v).z, float, lane)))
 
