@@ -1,15 +1,28 @@
 // The caustic's irradiance at a place, from the photon map: from the photons within a fixed radius or those whose
-// footprints cover it (a grid), or from the k nearest (a tree). The SIMD is inside the ray: eight photons at a time.
+// footprints cover it (a grid), or from the k nearest (a tree). The SIMD is inside the ray: a batch of photons at a time.
 #ifndef VITRUM_GATHER_H
 #define VITRUM_GATHER_H
 
 #include "photon_map.h"
 #include "switches.h"
 
-// Photons and their power, eight at a time.
+// Leaves of the tree have 8 photons; blocks of the grid are twice as long, for processors whose vectors are.
+#if WIDTH == 16 && CAUSTICS != CAUSTICS_NEAREST
+#define BATCH 16
+#define BATCH_LANES ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#else
+#define BATCH 8
+#define BATCH_LANES ((uint8)(0, 1, 2, 3, 4, 5, 6, 7))
+#endif
+typedef JOIN(float, BATCH) BatchFloat;
+typedef JOIN(int, BATCH) BatchInt;
+typedef JOIN(uint, BATCH) BatchUint;
+FUNCTION BatchFloat load_batch(__global const float* from) { return JOIN(vload, BATCH)(0, from); }
+
+// Photons and their power, a batch at a time.
 typedef struct {
-  float8 red, green, blue;
-  int8 minus_count;
+  BatchFloat red, green, blue;
+  BatchInt minus_count;
 } Sums;
 
 FUNCTION Sums no_sums(void) {
@@ -21,16 +34,32 @@ FUNCTION Sums no_sums(void) {
   return sums;
 }
 
-FUNCTION float sum8(float8 v) {
-  return ((v.s0 + v.s4) + (v.s1 + v.s5)) + ((v.s2 + v.s6) + (v.s3 + v.s7));
+FUNCTION float sum_of_batch(const BatchFloat v) {
+#if BATCH == 16
+  const float8 half_sum = v.lo + upper8(v);
+#else
+  const float8 half_sum = v;
+#endif
+  const float4 fours = half_sum.lo + half_sum.hi;
+  return (fours.x + fours.y) + (fours.z + fours.w);
 }
 
-FUNCTION uint photons_in(const Sums* sums) {
-  const int4 halves = sums->minus_count.lo + sums->minus_count.hi;
-  return (uint)-(halves.s0 + halves.s1 + halves.s2 + halves.s3);
+FUNCTION uint photons_in(const Sums* sums) { return (uint)-(int)sum_of_batch(JOIN(convert_float, BATCH)(sums->minus_count)); }
+
+FUNCTION float3 total_power(const Sums* sums) {
+  return (float3)(sum_of_batch(sums->red), sum_of_batch(sums->green), sum_of_batch(sums->blue));
 }
 
-FUNCTION float3 total_power(const Sums* sums) { return (float3)(sum8(sums->red), sum8(sums->green), sum8(sums->blue)); }
+FUNCTION BatchInt came_to_front(const BatchInt packed, float3 n) {
+  const BatchFloat along = JOIN(convert_float, BATCH)(DIRECTION_X(packed)) * n.x +
+                           JOIN(convert_float, BATCH)(DIRECTION_Y(packed)) * n.y +
+                           JOIN(convert_float, BATCH)(DIRECTION_Z(packed)) * n.z;
+  return along < 0.0f;
+}
+
+FUNCTION BatchFloat distance_off_plane(const BatchFloat dx, const BatchFloat dy, const BatchFloat dz, float3 n) {
+  return fabs(dx * n.x + dy * n.y + dz * n.z);
+}
 
 #if CAUSTICS == CAUSTICS_NONE
 typedef struct {

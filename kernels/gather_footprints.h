@@ -14,37 +14,36 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
   const uint bucket = cell >> grid.bucket_shift;
   const uint first = map->first_of_cell[bucket + cell];
   const uint last = map->first_of_cell[bucket + cell + 1];
-  const BucketData data = map->buckets[bucket];
-  const uint stride = data.stride;
-  __global const float* entries = map->photons + (ulong)data.start * BUCKET_UNIT;
-  for (uint i = first; i < last; i += 8) {
-    const float8 dx = vload8(0, entries + PHOTON_X * stride + i) - p.x;
-    const float8 dy = vload8(0, entries + PHOTON_Y * stride + i) - p.y;
-    const float8 dz = vload8(0, entries + PHOTON_Z * stride + i) - p.z;
-    __global const float* u = entries + FOOTPRINT_U * stride + i;
-    __global const float* v = entries + FOOTPRINT_V * stride + i;
-    const float8 ux = vload8(0, u);
-    const float8 uy = vload8(0, u + stride);
-    const float8 uz = vload8(0, u + 2 * stride);
-    const float8 vx = vload8(0, v);
-    const float8 vy = vload8(0, v + stride);
-    const float8 vz = vload8(0, v + 2 * stride);
-    const float8 tent_u = 1.0f - fabs(dx * ux + dy * uy + dz * uz);
-    const float8 tent_v = 1.0f - fabs(dx * vx + dy * vy + dz * vz);
-    const uint8 lane = (uint8)(0, 1, 2, 3, 4, 5, 6, 7) + i;
-    int8 counts = (tent_u > 0.0f) & (tent_v > 0.0f) & (lane < last);
+  __global const float* entries_of_bucket = photons_of_bucket(map, bucket);
+  for (uint i = first / BATCH * BATCH; i < last; i += BATCH) {
+    __global const float* entries = entries_of_bucket + map_place(i, 0, MAP_FIELDS);
+    const BatchFloat dx = load_batch(entries + PHOTON_X * MAP_BLOCK) - p.x;
+    const BatchFloat dy = load_batch(entries + PHOTON_Y * MAP_BLOCK) - p.y;
+    const BatchFloat dz = load_batch(entries + PHOTON_Z * MAP_BLOCK) - p.z;
+    __global const float* u = entries + FOOTPRINT_U * MAP_BLOCK;
+    __global const float* v = entries + FOOTPRINT_V * MAP_BLOCK;
+    const BatchFloat ux = load_batch(u);
+    const BatchFloat uy = load_batch(u + MAP_BLOCK);
+    const BatchFloat uz = load_batch(u + 2 * MAP_BLOCK);
+    const BatchFloat vx = load_batch(v);
+    const BatchFloat vy = load_batch(v + MAP_BLOCK);
+    const BatchFloat vz = load_batch(v + 2 * MAP_BLOCK);
+    const BatchFloat tent_u = 1.0f - fabs(dx * ux + dy * uy + dz * uz);
+    const BatchFloat tent_v = 1.0f - fabs(dx * vx + dy * vy + dz * vz);
+    // Those before `first` are beyond all others.
+    BatchInt counts = (tent_u > 0.0f) & (tent_v > 0.0f) & (BATCH_LANES + (i - first) < last - first);
     if (!any(counts)) continue;
     // Off its own plane too: nothing else but the cells that list it tells how high a tent is.
-    const float8 x = area * (uy * vz - uz * vy);
-    const float8 y = area * (uz * vx - ux * vz);
-    const float8 z = area * (ux * vy - uy * vx);
-    const float8 height = dx * x + dy * y + dz * z;
-    const uint8 packed = as_uint8(vload8(0, entries + PHOTON_DIRECTION * stride + i));
-    const uint8 flags = as_uint8(vload8(0, entries + FOOTPRINT_FLAGS * stride + i));
-    counts &= ((flags & ~IN_OTHER_CELL) == level) & came_to_front(as_int8(packed), n) &
+    const BatchFloat x = area * (uy * vz - uz * vy);
+    const BatchFloat y = area * (uz * vx - ux * vz);
+    const BatchFloat z = area * (ux * vy - uy * vx);
+    const BatchFloat height = dx * x + dy * y + dz * z;
+    const BatchUint packed = JOIN(as_uint, BATCH)(load_batch(entries + PHOTON_DIRECTION * MAP_BLOCK));
+    const BatchUint flags = JOIN(as_uint, BATCH)(load_batch(entries + FOOTPRINT_FLAGS * MAP_BLOCK));
+    counts &= ((flags & ~IN_OTHER_CELL) == level) & came_to_front(JOIN(as_int, BATCH)(packed), n) &
               (distance_off_plane(dx, dy, dz, n) <= max_off_plane) &
               (height * height <= max_off_plane * max_off_plane * (x * x + y * y + z * z));
-    add_weighted(entries, stride, i, counts, tent_u * tent_v, sums);
+    add_weighted(entries, counts, tent_u * tent_v, sums);
   }
 }
 

@@ -23,17 +23,17 @@ FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) {
          (p.x <= map->high.x + map->radius) & (p.y <= map->high.y + map->radius) & (p.z <= map->high.z + map->radius);
 }
 
-// Adds eight photons of a bucket from `i` on, those that count, each by its weight.
-FUNCTION void add_weighted(__global const float* map, uint stride, uint i, int8 counts, float8 weight, Sums* sums) {
+FUNCTION __global const float* photons_of_bucket(const PhotonMap* map, uint bucket) {
+  return map->photons + (ulong)map->buckets[bucket].start * MAP_BLOCK;
+}
+
+// Adds a batch of photons, those that count, each by its weight.
+FUNCTION void add_weighted(__global const float* photons, const BatchInt counts, const BatchFloat weight, Sums* sums) {
   sums->minus_count += counts;
-  const float8 counted = counts ? weight : 0.0f;
-  // What lies behind the last photon may be no number, which a weight of 0 would not take out.
-  const float8 red = vload8(0, map + (PHOTON_POWER + 0) * stride + i);
-  const float8 green = vload8(0, map + (PHOTON_POWER + 1) * stride + i);
-  const float8 blue = vload8(0, map + (PHOTON_POWER + 2) * stride + i);
-  sums->red = fma(counted, counts ? red : 0.0f, sums->red);
-  sums->green = fma(counted, counts ? green : 0.0f, sums->green);
-  sums->blue = fma(counted, counts ? blue : 0.0f, sums->blue);
+  const BatchFloat counted = counts ? weight : 0.0f;
+  sums->red = fma(counted, load_batch(photons + (PHOTON_POWER + 0) * MAP_BLOCK), sums->red);
+  sums->green = fma(counted, load_batch(photons + (PHOTON_POWER + 1) * MAP_BLOCK), sums->green);
+  sums->blue = fma(counted, load_batch(photons + (PHOTON_POWER + 2) * MAP_BLOCK), sums->blue);
 }
 
 #endif

@@ -4,9 +4,10 @@
 // [photon_in_run(run_length, r, f) + i].
 //
 // The map is divided into buckets of 2^bucket_shift neighbouring cells, each with room of its own, in which it is sorted.
-// Until then its photons are rows of PHOTON_ROW floats; then field f of photon i of the bucket is at
-// [BUCKET_UNIT * start + f * stride + i], so that eight neighbours are read at once. Where a cell starts in its bucket is
-// at first_of_cell[cell + bucket], since each bucket has one more entry: where its last cell ends.
+// Until then its photons are rows of PHOTON_ROW floats; then they are in blocks of MAP_BLOCK, field by field in each, so
+// that neighbours are read at once and are near each other in memory: field f of photon i of the bucket is at
+// [MAP_BLOCK * start + map_place(i, f, fields)]. The last one fills up its block. Where a cell starts in its bucket
+// is at first_of_cell[cell + bucket], since each bucket has one more entry: where its last cell ends.
 //
 // The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
 // far photons cost nothing but a failed test of distance. Of the 3 x 3 x 3 cells around a place each is visited once,
@@ -82,11 +83,18 @@
 FUNCTION float level_scale(uint level) { return (float)(1u << 2u * level); }
 #define IN_OTHER_CELL 0x80000000u
 
-#define BUCKET_UNIT 16u        // floats
+#define MAP_BLOCK 16u          // photons; a bucket starts at so many floats, too
+FUNCTION uint map_place(uint photon, uint field, uint fields) {
+  return (photon / MAP_BLOCK * fields + field) * MAP_BLOCK + photon % MAP_BLOCK;
+}
 typedef struct {
-  uint start;                  // in units
-  uint stride;                 // of the sorted photons' fields
+  uint start;                  // of its photons, in floats / MAP_BLOCK
+  // Boxes around its photons [m] and around their packed directions; not with footprints.
+  float low[3], high[3];
+  float low_direction[3], high_direction[3];
 } BucketData;
+// Floats of a sorted bucket.
+FUNCTION uint map_floats(uint photons, uint fields) { return (photons + MAP_BLOCK - 1u) / MAP_BLOCK * MAP_BLOCK * fields; }
 
 // A run may store two photons for each that it shoots, since one may branch off; on a lattice, where up to five do at one in
 // sixteen, but at every fourth of a column, it is three. And there is room for a packet beyond, so that packets may be
@@ -151,7 +159,11 @@ typedef struct {
 #ifdef __OPENCL_VERSION__
 
 // Far away, cells are told apart no longer, which only makes candidates.
-FUNCTION int cell_coordinate(float x, float inverse_cell) { return (int)floor(clamp(x * inverse_cell, -1e9f, 1e9f)); }
+FUNCTION int cell_coordinate(float x, float inverse_cell) {
+  const float cell = clamp(x * inverse_cell, -1e9f, 1e9f);
+  const int towards_zero = (int)cell;  // PoCL's floor of a scalar is slow
+  return towards_zero - ((float)towards_zero > cell);
+}
 FUNCTION Uint cell_coordinates(Float x, float inverse_cell) {
   const Float cell = floor(x * inverse_cell);
   return AS_UINT(TO_INT(cell > 1e9f ? 1e9f : cell < -1e9f ? -1e9f : cell));
@@ -184,22 +196,16 @@ FUNCTION Uint packed_component(Float x) { return AS_UINT(TO_INT(rint(x * 511.0f)
 FUNCTION Uint packed_direction(const Vec3 d) {
   return packed_component(d.x) | packed_component(d.y) << 10 | packed_component(d.z) << 20;
 }
+// A component of packed directions, int or of any width.
+#define DIRECTION_X(packed) ((packed) << 22 >> 22)
+#define DIRECTION_Y(packed) ((packed) << 12 >> 22)
+#define DIRECTION_Z(packed) ((packed) << 2 >> 22)
 
 // A photon counts for a surface if it came to the surface's front, and lies within this share of the radius off its
 // plane: on curved surfaces and in corners, the rest lies on something else.
 #define PLANE_SHARE 0.25f
 // The same for footprints, of both planes, whose cells it makes thicker.
 #define FOOTPRINT_OFF_PLANE 0.125f
-
-FUNCTION int8 came_to_front(int8 packed, float3 n) {
-  const float8 along = convert_float8(packed << 22 >> 22) * n.x + convert_float8(packed << 12 >> 22) * n.y +
-                       convert_float8(packed << 2 >> 22) * n.z;
-  return along < 0.0f;
-}
-
-FUNCTION float8 distance_off_plane(float8 dx, float8 dy, float8 dz, float3 n) {
-  return fabs(dx * n.x + dy * n.y + dz * n.z);
-}
 
 #endif
 

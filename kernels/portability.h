@@ -216,6 +216,12 @@ FUNCTION float8 upper8(const float16 v) {
 #endif
 }
 
+FUNCTION float least8(const float8 v) {
+  const float4 of_four = fmin(v.lo, v.hi);
+  const float2 of_two = fmin(of_four.lo, of_four.hi);
+  return min(of_two.x, of_two.y);
+}
+
 // One lane of a Vec3.
 #define LANE3(v, lane) ((float3)(LANE((v).x, float, lane), LANE((v).y, float, lane), LANE((v).z, float, lane)))
 

@@ -102,12 +102,7 @@ FUNCTION void draw_line(const Tile tile, const float4 plane, const float3 power,
   }
 }
 
-FUNCTION float least_of(const float16 v) {
-  const float8 of_eight = fmin(v.lo, upper8(v));
-  const float4 of_four = fmin(of_eight.lo, of_eight.hi);
-  const float2 of_two = fmin(of_four.lo, of_four.hi);
-  return min(of_two.x, of_two.y);
-}
+FUNCTION float least16(const float16 v) { return least8(fmin(v.lo, upper8(v))); }
 
 // Adds `power` times `scales` of triangles a, b, c and a, c, d by their areas in each spot.
 FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 power, const float2 scales, const float2 a,
@@ -158,8 +153,8 @@ FUNCTION void draw_triangles(const Tile tile, const float4 plane, const float3 p
     const float16 weight = density2 * (end - start);
     const float16 firsts = passes ? left : (float16)(INFINITY);
     const float16 lasts = passes ? -right : (float16)(INFINITY);
-    const int first = (int)clamp(least_of(firsts), 0.0f, size.x) / SPOTS * SPOTS;
-    const int last = (int)clamp(1.0f - least_of(lasts), 0.0f, size.x);
+    const int first = (int)clamp(least16(firsts), 0.0f, size.x) / SPOTS * SPOTS;
+    const int last = (int)clamp(1.0f - least16(lasts), 0.0f, size.x);
     for (int column = first; column < last; column += SPOTS) {
       const float8 left_sides = (float8)(0.0f, 1.0f, 2.0f, 3.0f, 0.0f, 1.0f, 2.0f, 3.0f) + (float)column;
       float8 share = 0.0f;

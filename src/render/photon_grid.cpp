@@ -19,10 +19,7 @@ constexpr size_t judging_places = 1024;        // by so many of it
 
 uint32_t log2_cells(const kernel::GridData& grid) { return grid.log2_x + grid.log2_y + grid.log2_z; }
 
-/// Stride of a bucket's sorted fields.
-uint32_t sorted_stride(uint32_t count) { return (count + 7) / 8 * 8; }
-
-constexpr uint32_t margin_rows = 16;           // a sorted bucket's strides, and reading beyond its end
+constexpr uint32_t margin_rows = 16;           // a sorted bucket is whole blocks
 /// Rows are whole or half units; an even number of them is whole in any case.
 uint32_t whole_units(uint32_t rows) { return (rows + 1) / 2 * 2; }
 
@@ -244,7 +241,7 @@ void PhotonGrid::finish() {
   std::vector<kernel::BucketData> buckets;
   std::vector<uint32_t> by_size;
   for (uint32_t bucket = 0; bucket < counts.size(); ++bucket) {
-    buckets.push_back({room_[bucket].start / (BUCKET_UNIT / row_), sorted_stride(counts[bucket])});
+    buckets.push_back({room_[bucket].start / (MAP_BLOCK / row_), {}, {}, {}, {}});
     by_size.push_back(bucket);
   }
 
@@ -266,7 +263,7 @@ void PhotonGrid::finish() {
     first_task.push_back(static_cast<uint32_t>(tasks.size()));
     first_scratch.push_back(scratch);
     tasks.insert(tasks.end(), own.begin(), own.end());
-    if (!own.empty()) scratch += (map_.fields * sorted_stride(counts[own.front()]) + BUCKET_UNIT - 1) / BUCKET_UNIT + 4;
+    if (!own.empty()) scratch += kernel::map_floats(counts[own.front()], map_.fields) / MAP_BLOCK;
   }
   first_task.push_back(static_cast<uint32_t>(tasks.size()));
 
@@ -283,7 +280,7 @@ void PhotonGrid::finish() {
   fill(first_task_, first_task);
   fill(first_scratch_, first_scratch);
   const size_t cells = size_t{1} << log2_cells(map_.grid);
-  reserve(scratch_, size_t{scratch} * BUCKET_UNIT);
+  reserve(scratch_, size_t{scratch} * MAP_BLOCK);
   reserve(next_of_cell_, cells);
   reserve(map_.first_of_cell, cells + counts.size());
   cl::Kernel kernel = context_.kernels.get("sort_into_cells");

@@ -341,31 +341,30 @@ const PhotonBalance& PhotonPass::balance() const { return state_->balance; }
 
 std::vector<cl_float8> read_photons(Device& device, const PhotonMap& map) {
   std::vector<cl_float8> photons;
-  const auto append = [&photons, &map](const float* fields, size_t stride, size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-      cl_float8 photon{};
-      for (size_t field = 0; field < PHOTON_FIELDS; ++field) photon.s[field] = fields[field * stride + i];
-      if (map.fields == FOOTPRINT_FIELDS) {
-        if (std::bit_cast<uint32_t>(fields[FOOTPRINT_FLAGS * stride + i]) & IN_OTHER_CELL) continue;
-        const auto vector = [&](size_t field) {
-          return glm::vec3(fields[field * stride + i], fields[(field + 1) * stride + i], fields[(field + 2) * stride + i]);
-        };
-        const float area = 1.0f / glm::length(glm::cross(vector(FOOTPRINT_U), vector(FOOTPRINT_V)));
-        for (size_t channel = 0; channel < 3; ++channel) photon.s[PHOTON_POWER + channel] *= area;
-      }
-      photons.push_back(photon);
+  // `stride`: between the fields of a photon.
+  const auto append = [&photons, &map](const float* fields, size_t stride) {
+    cl_float8 photon{};
+    for (size_t field = 0; field < PHOTON_FIELDS; ++field) photon.s[field] = fields[field * stride];
+    if (map.fields == FOOTPRINT_FIELDS) {
+      if (std::bit_cast<uint32_t>(fields[FOOTPRINT_FLAGS * stride]) & IN_OTHER_CELL) return;
+      const auto vector = [&](size_t field) {
+        return glm::vec3(fields[field * stride], fields[(field + 1) * stride], fields[(field + 2) * stride]);
+      };
+      const float area = 1.0f / glm::length(glm::cross(vector(FOOTPRINT_U), vector(FOOTPRINT_V)));
+      for (size_t channel = 0; channel < 3; ++channel) photon.s[PHOTON_POWER + channel] *= area;
     }
+    photons.push_back(photon);
   };
   if (map.leaves.size() > 0) {
     const std::vector<float> leaves = device.read(map.leaves, 0, map.leaves.size());
-    for (size_t leaf = 0; 8 * leaf < map.count; ++leaf)
-      append(&leaves[leaf * PHOTON_FIELDS * 8], 8, std::min<size_t>(8, map.count - 8 * leaf));
+    for (size_t i = 0; i < map.count; ++i) append(&leaves[i / 8 * PHOTON_FIELDS * 8 + i % 8], 8);
   } else {
     const std::vector<kernel::BucketData> buckets = device.read(map.buckets, 0, map.bucket_counts.size());
     for (size_t b = 0; b < buckets.size(); ++b) {
+      const uint32_t count = map.bucket_counts[b];
       const std::vector<float> fields =
-          device.read(map.photons, size_t{buckets[b].start} * BUCKET_UNIT, size_t{map.fields} * buckets[b].stride);
-      append(fields.data(), buckets[b].stride, map.bucket_counts[b]);
+          device.read(map.photons, size_t{buckets[b].start} * MAP_BLOCK, kernel::map_floats(count, map.fields));
+      for (uint32_t i = 0; i < count; ++i) append(&fields[kernel::map_place(i, 0, map.fields)], MAP_BLOCK);
     }
   }
   return photons;

@@ -269,17 +269,16 @@ std::vector<Entry> entries_of(Device& device, const PhotonMap& map) {
   const auto firsts = device.read(map.first_of_cell, 0, (size_t{cells_of_bucket} + 1) * buckets.size());
   std::vector<Entry> entries;
   for (uint32_t b = 0; b < buckets.size(); ++b) {
-    const size_t stride = buckets[b].stride;
-    const std::vector<float> fields =
-        device.read(map.photons, size_t{buckets[b].start} * BUCKET_UNIT, map.fields * stride);
+    const std::vector<float> fields = device.read(map.photons, size_t{buckets[b].start} * MAP_BLOCK,
+                                                  kernel::map_floats(map.bucket_counts[b], map.fields));
     for (uint32_t cell = b << map.grid.bucket_shift; cell < (b + 1) << map.grid.bucket_shift; ++cell)
       for (uint32_t i = firsts[cell + b]; i < firsts[cell + b + 1]; ++i) {
-        const auto vector = [&](size_t field) {
-          const float* x = &fields[field * stride + i];
-          return dvec3(glm::vec3(x[0], x[stride], x[2 * stride]));
+        const auto value = [&](uint32_t field) { return fields[kernel::map_place(i, field, map.fields)]; };
+        const auto vector = [&](uint32_t field) {
+          return dvec3(glm::vec3(value(field), value(field + 1), value(field + 2)));
         };
-        const auto bits = std::bit_cast<int32_t>(fields[PHOTON_DIRECTION * stride + i]);
-        const auto flags = std::bit_cast<uint32_t>(fields[FOOTPRINT_FLAGS * stride + i]);
+        const auto bits = std::bit_cast<int32_t>(value(PHOTON_DIRECTION));
+        const auto flags = std::bit_cast<uint32_t>(value(FOOTPRINT_FLAGS));
         entries.push_back({vector(PHOTON_X), vector(PHOTON_POWER), {vector(FOOTPRINT_U), vector(FOOTPRINT_V)},
                            {bits << 22 >> 22, bits << 12 >> 22, bits << 2 >> 22}, cell,
                            flags & ~IN_OTHER_CELL, (flags & IN_OTHER_CELL) == 0});

@@ -165,6 +165,24 @@ TEST_CASE("photons within a fixed radius are those of brute force") {
   }
 }
 
+TEST_CASE("where all photons of a bucket count they need no test, and elsewhere they get one") {
+  // A floor; towards one end photons come from below, too, and towards the other there are some above it.
+  Random random;
+  std::vector<cl_float8> photons;
+  for (int i = 0; i < 40'000; ++i) {
+    vec3 p = random.in_box(vec3(-1, 0, -1), vec3(1, 0, 1));
+    const bool from_below = p.z < -0.5f && i % 3 == 0;
+    if (p.z > 0.5f && i % 3 == 0) p.y = i % 2 == 0 ? 0.05f : -0.05f;
+    photons.push_back(photon(p, glm::normalize(vec3(0.3f, from_below ? 1 : -1, 0.2f)), random.in_box(vec3(0.1f), vec3(1))));
+  }
+  std::vector<Query> queries;
+  for (int i = 0; i < 600; ++i) queries.push_back({random.in_box(vec3(-1, 0, -1), vec3(1, 0, 1)), {0, i % 4 == 0 ? -1 : 1, 0}});
+  Gatherer& gatherer = shared_gatherer();
+  const SortedPhotons sorted = gatherer.grid(photons, 0.1f);
+  CHECK(sorted.map.bucket_counts.size() >= 4);
+  check(gatherer.irradiance(sorted, queries), queries, [&](const Query& query) { return brute_within(query, photons, 0.1); });
+}
+
 TEST_CASE("the k nearest photons are those of brute force") {
   Random random;
   const std::vector<cl_float8> photons = many_photons(random);
