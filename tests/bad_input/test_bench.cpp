@@ -88,6 +88,23 @@ TEST_CASE("gathered irradiance is what nanoflann's photons give") {
   CHECK(contains(file_bytes(folder / "a.svg"), "times as fast as nanoflann"));
 }
 
+TEST_CASE("what a photon costs is told by their number and by the threads") {
+  const TemporaryFolder folder;
+  const auto report = quick_report("scaling", {"--plot", folder / "a.svg"});
+  REQUIRE(report["rows"].size() == 4);  // one pass and ten; one thread and two
+  for (size_t k = 0; k < 4; ++k) {
+    const auto& row = report["rows"][k];
+    CAPTURE(row.dump());
+    CHECK(row["what"] == (k < 2 ? "passes" : "threads"));
+    CHECK(row[k < 2 ? "passes" : "threads"] == (k < 2 ? (k == 0 ? 1 : 10) : k - 1));
+    CHECK(row["photons"].get<double>() * row["ns a photon"].get<double>() ==
+          doctest::Approx(1e9 * row["photon CPU s"].get<double>()).epsilon(1e-5));
+    CHECK(row[k < 2 ? "process MB" : "times that of one"] > 0.0);
+  }
+  CHECK(contains(report["findings"].dump(), "M photons/s on 2 threads"));
+  CHECK(contains(file_bytes(folder / "a.svg"), "processor time a photon"));
+}
+
 TEST_CASE("a cold cache makes the start longer, a scene of one's own may be started with") {
   const auto report = quick_report("startup");
   REQUIRE(report["rows"].size() == 2);
