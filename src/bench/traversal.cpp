@@ -233,7 +233,7 @@ size_t different(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b)
 
 BenchResult bench_traversal(const BenchContext& context) {
   std::vector<uint32_t> sizes = {16};
-  if (!context.quick) sizes.insert(sizes.end(), {45, 180, 360});
+  if (!context.quick) sizes.insert(sizes.end(), {45, 180, 433, 790});
   const size_t count = context.quick ? 64 * 64 : 1024 * 1024;
   const int rounds = context.quick ? 3 : 5;
   const std::string unit = SideBySide::unit(context);

@@ -1,6 +1,5 @@
 #include "device/opencl.hpp"
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -202,24 +201,6 @@ cl::Buffer Device::allocate_bytes(size_t bytes, const char* purpose) {
   } catch (const cl::Error& error) {
     fail(error, "getting " + size, mend);
   }
-}
-
-// Where a buffer lies in the host's memory.
-void Device::ask_for_large_pages(const cl::Buffer& buffer, size_t bytes) {
-#ifdef MADV_HUGEPAGE
-  constexpr size_t worthwhile = size_t{8} << 20;
-  if (!info_.is_cpu || bytes < worthwhile) return;
-  try {
-    void* memory = queue_.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
-    const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
-    const uintptr_t begin = (reinterpret_cast<uintptr_t>(memory) + page - 1) / page * page;
-    const uintptr_t end = (reinterpret_cast<uintptr_t>(memory) + bytes) / page * page;
-    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // not having them does not matter
-    queue_.enqueueUnmapMemObject(buffer, memory);
-  } catch (const cl::Error& error) {
-    fail(error, "looking at device memory", "another device may do better (--device)");
-  }
-#endif
 }
 
 void Device::write_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, const void* data) {

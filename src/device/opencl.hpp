@@ -85,14 +85,6 @@ class Device {
   Buffer<T> allocate(size_t count, const char* purpose) {
     return {allocate_bytes(std::max<size_t>(count, 1) * sizeof(T), purpose), count};
   }
-  /// The same for large buffers that will be written all over: in pages of 2 MiB where the system has them, which takes
-  /// less time than a page after the other, but memory for what is left out, too.
-  template <typename T>
-  Buffer<T> allocate_densely(size_t count, const char* purpose) {
-    const Buffer<T> buffer = allocate<T>(count, purpose);
-    ask_for_large_pages(buffer.cl(), count * sizeof(T));
-    return buffer;
-  }
   /// A buffer with a copy of `values`.
   template <typename T>
   Buffer<T> upload(const std::vector<T>& values, const char* purpose) {
@@ -133,7 +125,6 @@ class Device {
 
  private:
   cl::Buffer allocate_bytes(size_t bytes, const char* purpose);
-  void ask_for_large_pages(const cl::Buffer& buffer, size_t bytes);
   void write_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, const void* data);
   void read_bytes(const cl::Buffer& buffer, size_t offset, size_t bytes, void* data);
   void copy_bytes(const cl::Buffer& from, size_t offset, const cl::Buffer& to, size_t to_offset, size_t bytes);

@@ -108,7 +108,7 @@ PhotonGrid::PhotonGrid(const KernelContext& context)
 void PhotonGrid::reserve_rows(uint64_t rows) {
   const size_t floats = (rows + margin_rows) * row_;
   if (map_.photons.size() >= floats) return;
-  const Buffer<float> larger = context_.device.allocate_densely<float>(floats, "photon map");
+  const Buffer<float> larger = context_.device.allocate<float>(floats, "photon map");
   if (used_rows_ > 0) context_.device.copy(map_.photons, 0, larger, 0, size_t{used_rows_} * row_);
   map_.photons = larger;
 }

@@ -117,7 +117,7 @@ struct PhotonPass::State {
     const uint64_t at_once = std::max<uint64_t>({lattices ? on_lattice : 0, context.launches.photons, pilot_size(room)});
     const auto needed = static_cast<uint32_t>((at_once + runs.length - 1) / runs.length);
     if (runs.landings.size() == 0 || lattices)
-      runs.landings = device.allocate_densely<float>(lattices ? LANDING_ROW * (on_lattice + on_lattice / 2) : 1, "photons in flight");
+      runs.landings = device.allocate<float>(lattices ? LANDING_ROW * (on_lattice + on_lattice / 2) : 1, "photons in flight");
     if (needed <= most_runs) return;
     most_runs = needed;
     runs.photons = device.allocate<float>(kernel::photon_in_run(runs.length, most_runs, 0, runs.row), "photons in flight");

@@ -83,6 +83,27 @@ class Figures(unittest.TestCase):
         self.assertIn("| LuxCore | left out |  |  | no network |", page)
         self.assertIn("2,000 times: 0.01 CPU s (line, 100 photons) against 20 |", page)
         self.assertIn("not measured here", page)
+        systems["vitrum"]["benchmarks"] = {
+            "scaling": {"commit": "c", "findings": [], "rows": [
+                {"what": "passes", "photons": 1e6, "ns a photon": 50, "process MB": 100},
+                {"what": "passes", "photons": 1e7, "ns a photon": 60, "process MB": 101},
+                {"what": "threads", "photons": 4e6, "threads": 2, "photon CPU s": 0.1, "times that of one": 1.04}]},
+            "traversal": {"commit": "c", "findings": ["slower"], "rows": [
+                {"what": "primary", "triangles": 5e5, "times as fast": 1.4, "B/triangle": 90, "Embree's B": 80},
+                {"what": "diffuse", "triangles": 5e5, "times as fast": 1.2, "B/triangle": 90, "Embree's B": 80}]},
+            "startup": {"commit": "c", "findings": [], "rows": [{"what": "warm", "first pixel s": 0.1}]}}
+        write_document(SCRATCH / "made", systems)
+        page = (SCRATCH / "made/performance.md").read_text()
+        self.assertIn("80 M/s by CPU time | yes |", page)
+        self.assertIn("1.04 times, 2 threads | yes |", page)
+        self.assertIn("50 / 60 ns", page)
+        self.assertRegex(page, r"What a photon costs .* no \|")
+        self.assertRegex(page, r"Primary, diffuse.* 1.2 to 1.4 \| no \|")
+        self.assertRegex(page, r"Memory of a triangle.* 90 bytes, Embree 80 \| no \|")
+        self.assertRegex(page, r"first pixel, warm: .15 s \| 0.1 s \| yes \|")
+        self.assertIn("- *traversal*: ", page)
+        self.assertNotIn("- *photons*: ", page)
+        self.assertIn("- slower", page)
         systems["mitsuba"]["processor"] = "another"
         with self.assertRaises(Failed):
             write_document(SCRATCH / "made", systems)

@@ -188,10 +188,10 @@ class Vitrum(System):
     def truth(self):
         return next(iter(read_exr(self.truth_file.read_bytes())[2].values()))
 
-    def bench(self):
-        """The findings of its own benchmark."""
+    def benchmark(self, name):
+        """The report of `vitrum bench NAME`."""
         report = self.scratch / "bench.json"
-        self.measured([self.program, "bench", "photons", "--report", report])
+        self.measured([self.program, "bench", name, "--report", report])
         return json.loads(report.read_text())
 
     def run(self, line, case, amount):
