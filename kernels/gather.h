@@ -44,7 +44,9 @@ FUNCTION float sum_of_batch(const BatchFloat v) {
   return (fours.x + fours.y) + (fours.z + fours.w);
 }
 
-FUNCTION uint photons_in(const Sums* sums) { return (uint)-(int)sum_of_batch(JOIN(convert_float, BATCH)(sums->minus_count)); }
+FUNCTION uint photons_in(const Sums* sums) {
+  return (uint)-(int)sum_of_batch(JOIN(convert_float, BATCH)(sums->minus_count));  // far below 2^24
+}
 
 FUNCTION float3 total_power(const Sums* sums) {
   return (float3)(sum_of_batch(sums->red), sum_of_batch(sums->green), sum_of_batch(sums->blue));

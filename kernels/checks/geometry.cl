@@ -96,7 +96,7 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
     photons.path = hash_pair(number, (Uint)(aim->seed + 77u));
     photons.history = 0;
     photons.alive = (Mask)-1;
-    Photons branched;
+    uint n_branched = 0;
     Tally absorbed, split_off;
     absorbed.sum = absorbed.rest = make_vec3(0.0f, 0.0f, 0.0f);
     split_off = absorbed;
@@ -117,7 +117,7 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
       note_wrong(result, &start, wrong);
       result->events += lanes_set(photons.alive);
       photons.alive &= wrong == 0;
-      interact(scene, &surface, max_depth, 0, 0, &photons, &branched, &absorbed, &split_off);
+      interact(scene, &surface, max_depth, 0, 0, &photons, &n_branched, &absorbed, &split_off);
     }
     result->rays += WIDTH;
   }

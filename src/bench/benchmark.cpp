@@ -13,6 +13,7 @@ const std::vector<Benchmark>& benchmarks() {
        bench_traversal},
       {"gather", "queries a second of both ways to gather photons, beside nanoflann", false, true, bench_gather},
       {"scaling", "cost of a photon by their number, from 10^6 to 10^9, with the memory, and by threads", false, true, bench_scaling},
+      {"limits", "what the device can do at best: arithmetic, memory read and copied", false, false, bench_limits},
       {"startup", "from the start to the first pixel, with the driver's cache of kernels warm and cold", true, false,
        bench_startup},
   };

@@ -42,6 +42,8 @@ class SideBySide {
   /// The median round's seconds.
   double ours() const { return median(ours_); }
   double theirs() const { return median(theirs_); }
+  /// Our shortest round's.
+  double least() const { return std::ranges::min(ours_); }
   /// How many times faster vitrum is: the median of the rounds' ratios.
   double speedup() const {
     std::vector<double> ratios;

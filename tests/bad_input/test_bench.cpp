@@ -105,6 +105,14 @@ TEST_CASE("what a photon costs is told by their number and by the threads") {
   CHECK(contains(file_bytes(folder / "a.svg"), "processor time a photon"));
 }
 
+TEST_CASE("what a device can do at best is arithmetic and memory") {
+  const auto report = quick_report("limits");
+  REQUIRE(report["rows"].size() == 6);
+  CHECK(report["rows"][0]["what"] == "multiply and add");
+  for (const auto& row : report["rows"]) CHECK(row["by CPU s of a thread"] > 0.0);
+  CHECK(report["rows"][1]["all threads"] == doctest::Approx(2.0 * report["rows"][1]["by CPU s of a thread"].get<double>()).epsilon(1e-5));
+}
+
 TEST_CASE("a cold cache makes the start longer, a scene of one's own may be started with") {
   const auto report = quick_report("startup");
   REQUIRE(report["rows"].size() == 2);
