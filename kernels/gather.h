@@ -45,7 +45,13 @@ FUNCTION float sum_of_batch(const BatchFloat v) {
 }
 
 FUNCTION uint photons_in(const Sums* sums) {
-  return (uint)-(int)sum_of_batch(JOIN(convert_float, BATCH)(sums->minus_count));  // far below 2^24
+#if BATCH == 16
+  const int8 half_sum = sums->minus_count.lo + as_int8(upper8(as_float16(sums->minus_count)));
+#else
+  const int8 half_sum = sums->minus_count;
+#endif
+  const int4 fours = half_sum.lo + half_sum.hi;
+  return (uint)-((fours.x + fours.y) + (fours.z + fours.w));
 }
 
 FUNCTION float3 total_power(const Sums* sums) {

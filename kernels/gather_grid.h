@@ -30,10 +30,12 @@ FUNCTION __global const float* photons_of_bucket(const PhotonMap* map, uint buck
 // Adds a batch of photons, those that count, each by its weight.
 FUNCTION void add_weighted(__global const float* photons, const BatchInt counts, const BatchFloat weight, Sums* sums) {
   sums->minus_count += counts;
-  const BatchFloat counted = counts ? weight : 0.0f;
-  sums->red = fma(counted, load_batch(photons + (PHOTON_POWER + 0) * MAP_BLOCK), sums->red);
-  sums->green = fma(counted, load_batch(photons + (PHOTON_POWER + 1) * MAP_BLOCK), sums->green);
-  sums->blue = fma(counted, load_batch(photons + (PHOTON_POWER + 2) * MAP_BLOCK), sums->blue);
+  const BatchFloat red = fma(weight, load_batch(photons + (PHOTON_POWER + 0) * MAP_BLOCK), sums->red);
+  const BatchFloat green = fma(weight, load_batch(photons + (PHOTON_POWER + 1) * MAP_BLOCK), sums->green);
+  const BatchFloat blue = fma(weight, load_batch(photons + (PHOTON_POWER + 2) * MAP_BLOCK), sums->blue);
+  sums->red = counts ? red : sums->red;
+  sums->green = counts ? green : sums->green;
+  sums->blue = counts ? blue : sums->blue;
 }
 
 #endif
