@@ -218,7 +218,7 @@ def triangle_memory(own):
 # Why a goal is not met, told where it is not.
 WHY = {
     "photons": "More than half of a photon's time is following it, in 228 instructions with bounds of rounding and a balance of "
-               "its power, and what a packet keeps is more than the registers hold; the rest is the sort, half of it copying "
+               "its power, and what a packet keeps is more than the registers hold; the rest is the sort, a third of it copying "
                "([limits.md](limits.md)).",
     "scaling": "It falls: in its first pass a process touches all of its memory for the first time, in pages that the system "
                "clears one by one. From 10^7 photons on it is flat.",
