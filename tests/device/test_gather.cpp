@@ -166,20 +166,26 @@ TEST_CASE("photons within a fixed radius are those of brute force") {
 }
 
 TEST_CASE("where all photons of a bucket count they need no test, and elsewhere they get one") {
-  // A floor; towards one end photons come from below, too, and towards the other there are some above it.
+  // A floor in buckets of .8 m along z: in one a third of the photons comes from below, in the next a single one does, in the
+  // next none; then a third is above the floor, then a third is below it; the last is as it should be.
   Random random;
   std::vector<cl_float8> photons;
-  for (int i = 0; i < 40'000; ++i) {
-    vec3 p = random.in_box(vec3(-1, 0, -1), vec3(1, 0, 1));
-    const bool from_below = p.z < -0.5f && i % 3 == 0;
-    if (p.z > 0.5f && i % 3 == 0) p.y = i % 2 == 0 ? 0.05f : -0.05f;
-    photons.push_back(photon(p, glm::normalize(vec3(0.3f, from_below ? 1 : -1, 0.2f)), random.in_box(vec3(0.1f), vec3(1))));
+  bool is_first = true;
+  for (int i = 0; i < 80'000; ++i) {
+    vec3 p = random.in_box(vec3(-1, 0, -2), vec3(1, 0, 2));
+    const bool is_third = i % 3 == 0, is_lone = is_first && i > 100 && p.z > -1.5f && p.z < -0.9f;
+    if (is_lone) is_first = false;
+    if (is_third && p.z > 0.0f && p.z < 0.8f) p.y = 0.05f;
+    if (is_third && p.z > 0.8f && p.z < 1.6f) p.y = -0.05f;
+    const float up = is_lone || (is_third && p.z < -1.65f) ? 1.0f : -1.0f;
+    photons.push_back(photon(p, glm::normalize(vec3(0.3f, up, 0.2f)), random.in_box(vec3(0.1f), vec3(1))));
   }
   std::vector<Query> queries;
-  for (int i = 0; i < 600; ++i) queries.push_back({random.in_box(vec3(-1, 0, -1), vec3(1, 0, 1)), {0, i % 4 == 0 ? -1 : 1, 0}});
+  for (const cl_float8& p : photons)  // where the lone one is, too
+    if (queries.size() < 800) queries.push_back({{p.s[0], 0, p.s[2]}, {0, queries.size() % 4 == 3 ? -1 : 1, 0}});
   Gatherer& gatherer = shared_gatherer();
   const SortedPhotons sorted = gatherer.grid(photons, 0.1f);
-  CHECK(sorted.map.bucket_counts.size() >= 4);
+  CHECK(sorted.map.bucket_counts.size() >= 16);
   check(gatherer.irradiance(sorted, queries), queries, [&](const Query& query) { return brute_within(query, photons, 0.1); });
 }
 
