@@ -38,9 +38,9 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
     const BatchFloat y = area * (uz * vx - ux * vz);
     const BatchFloat z = area * (ux * vy - uy * vx);
     const BatchFloat height = dx * x + dy * y + dz * z;
-    const BatchUint packed = JOIN(as_uint, BATCH)(load_batch(entries + PHOTON_DIRECTION * MAP_BLOCK));
+    const BatchInt packed = JOIN(as_int, BATCH)(load_batch(entries + PHOTON_DIRECTION * MAP_BLOCK));
     const BatchUint flags = JOIN(as_uint, BATCH)(load_batch(entries + FOOTPRINT_FLAGS * MAP_BLOCK));
-    counts &= ((flags & ~IN_OTHER_CELL) == level) & came_to_front(JOIN(as_int, BATCH)(packed), n) &
+    counts &= ((flags & ~IN_OTHER_CELL) == level) & came_to_front(packed, n) &
               (distance_off_plane(dx, dy, dz, n) <= max_off_plane) &
               (height * height <= max_off_plane * max_off_plane * (x * x + y * y + z * z));
     add_weighted(entries, counts, tent_u * tent_v, sums);

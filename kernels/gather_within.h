@@ -65,11 +65,13 @@ FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, ui
         __global const uint* first_of = map->first_of_cell + bucket;
         const uint first = first_of[cell];
         const uint last = first_of[end];
-        if (bucket != asked) sure = all_on_surface(map->buckets + bucket, p, n, max_off_plane);
-        asked = bucket;
-        __global const float* photons_here = photons_of_bucket(map, bucket);
-        if (sure) add_photons(photons_here, first, last, p, n, inverse_r2, max_off_plane, 1, &sums);
-        else add_photons(photons_here, first, last, p, n, inverse_r2, max_off_plane, 0, &sums);
+        if (first < last) {
+          if (bucket != asked) sure = all_on_surface(map->buckets + bucket, p, n, max_off_plane);
+          asked = bucket;
+          __global const float* of_bucket = photons_of_bucket(map, bucket);
+          if (sure) add_photons(of_bucket, first, last, p, n, inverse_r2, max_off_plane, 1, &sums);
+          else add_photons(of_bucket, first, last, p, n, inverse_r2, max_off_plane, 0, &sums);
+        }
         left -= end - cell;
         cell = end == row + size_x ? row : end;
       }

@@ -1,9 +1,7 @@
 // What a device can do at best, for `vitrum bench limits`: arithmetic that waits for nothing, and memory read in a row.
 #include "portability.h"
 
-#define CHAINS 12  // as many as hide what a multiplication and addition take, and fit the registers
-
-// 2 WIDTH CHAINS `steps` operations by each work-item.
+// 24 WIDTH `steps` operations by each work-item, in twelve chains: as many as hide what one takes, and fit the registers.
 __kernel void multiply_and_add(const uint count, const uint steps, __global float* results) {
   const uint i = get_global_id(0);
   if (i >= count) return;

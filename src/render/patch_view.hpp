@@ -17,8 +17,8 @@ class PatchView {
   bool is_all() const { return is_all_; }
   /// Starts a pass: no light.
   void start();
-  /// Adds all photons of a lattice, or those of a launch without one. Returns false if there is no room for all: so many patches of light reach
-  /// from the view behind the eye, and are cut.
+  /// Adds all photons of a lattice, or those of a launch without one. Returns false if there is no room for all: so many
+  /// patches of light reach from the view behind the eye, and are cut.
   bool add(const PhotonRuns& runs, const kernel::FootprintLimits& limits);
   /// From now on no pixel is drawn into.
   void give_up();

@@ -20,7 +20,7 @@ constexpr size_t judging_places = 1024;        // by so many of it
 uint32_t log2_cells(const kernel::GridData& grid) { return grid.log2_x + grid.log2_y + grid.log2_z; }
 
 constexpr uint32_t margin_rows = 16;           // a sorted bucket is whole blocks
-/// Rows are whole or half units; an even number of them is whole in any case.
+/// Buckets start at a multiple of MAP_BLOCK floats, which are one or two rows; an even number of them is whole in any case.
 uint32_t whole_units(uint32_t rows) { return (rows + 1) / 2 * 2; }
 
 }  // namespace
