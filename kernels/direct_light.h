@@ -114,10 +114,9 @@ FUNCTION Vec3 direct_light(const Scene scene, const uint light_index, __global c
   Mask lit = wanted & (exact_any_hit(scene, shadow, surface->from) == 0);
 #if HAS_MESH
   const Uint from = leaving(surface, surface->entering);
-  FOR_LANES(lane, lit) {
-    const Ray ray = mesh_ray(scene, &shadow, LANE(from, uint, lane), lane);
-    if (tree_any(&ray, scene.nodes, scene.leaves)) SET_LANE(lit, int, lane, 0);
-  }
+  const uint unhidden = lane_bits(lit);
+  const MeshRays rays = mesh_rays(scene, &shadow, from, unhidden);
+  lit &= mask_of(~tree_any(&rays, unhidden, scene.nodes, scene.leaves));
 #endif
 
   // [direct]

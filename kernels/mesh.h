@@ -1,4 +1,4 @@
-// Triangles of meshes as rays meet them.
+// Triangles of meshes as rays meet them: WIDTH at a time, by their numbers among those of all meshes.
 #ifndef VITRUM_MESH_H
 #define VITRUM_MESH_H
 
@@ -6,30 +6,44 @@
 #include "scene.h"
 #include "surface.h"
 
-FUNCTION float3 corner_of(const Scene scene, __global const TriangleData* triangle, const uint corner) {
-  return vload3(triangle->position[corner], scene.positions);
+typedef struct {
+  Vec3 a, b, c;
+} Corners;
+
+FUNCTION Corners corners_of(const Scene scene, const Uint primitive) {
+  Corners corners;
+  corners.a = GATHER3(scene.positions, 3u * FIELD(Uint, uint, scene.triangles, position[0], primitive));
+  corners.b = GATHER3(scene.positions, 3u * FIELD(Uint, uint, scene.triangles, position[1], primitive));
+  corners.c = GATHER3(scene.positions, 3u * FIELD(Uint, uint, scene.triangles, position[2], primitive));
+  return corners;
 }
 
-FUNCTION float3 triangle_normal(const Scene scene, __global const TriangleData* triangle) {
-  const float3 a = corner_of(scene, triangle, 0);
-  return lane_normalize3(lane_cross3(corner_of(scene, triangle, 1) - a, corner_of(scene, triangle, 2) - a));
+FUNCTION Vec3 normal_of(const Corners* corners) {
+  return normalize_any3(cross3(subtract3(corners->b, corners->a), subtract3(corners->c, corners->a)));
 }
 
-FUNCTION int leaves_mesh(const uint from) { return from != NO_INDEX && (from & FROM_MESH); }
+// Bound of the distance [m] between a place that is computed on a triangle and its plane.
+FUNCTION Float triangle_error(const Corners* corners) {
+  return SURFACE_ROUNDING * larger(larger(largest3(corners->a), largest3(corners->b)), largest3(corners->c));
+}
 
-// One ray of a packet, for the tree.
-FUNCTION Ray mesh_ray(const Scene scene, const RayPacket* packet, const uint from, const uint lane) {
-  Ray ray = free_ray(LANE3(packet->origin, lane), LANE3(packet->direction, lane), LANE(packet->t_min, float, lane),
-                     LANE(packet->t_max, float, lane));
-  ray.error = ray.t_min;
-  if (leaves_mesh(from)) {
-    // What it leaves is known by name, so that its neighbours may come at once.
-    ray.t_min = 0.0f;
-    ray.primitive = from & FROM_TRIANGLE;
-    ray.shape = scene.triangles[ray.primitive].shape;
-    ray.front = (from & FROM_FRONT) != 0;
-  }
-  return ray;
+// The body that a shape beyond the exact ones is.
+FUNCTION __global const BodyData* body_of(const Scene scene, const uint shape) {
+  return &scene.bodies[shape - (scene.n_spheres + scene.n_flats)];
+}
+
+// A packet's rays, for the tree: those whose bits in `which` are set.
+FUNCTION MeshRays mesh_rays(const Scene scene, const RayPacket* packet, const Uint from, const uint which) {
+  const Mask leaves_mesh = mask_of(which) & (from != NO_INDEX) & ((from & FROM_MESH) != 0);
+  MeshRays m;
+  m.rays = *packet;
+  m.rays.t_min = leaves_mesh ? 0.0f : packet->t_min;
+  m.error = packet->t_min;
+  m.primitive = leaves_mesh ? from & FROM_TRIANGLE : (Uint)(0);
+  m.shape = leaves_mesh ? FIELD(Uint, uint, scene.triangles, shape, m.primitive) : (Uint)(NO_INDEX);
+  m.primitive = leaves_mesh ? m.primitive : (Uint)(NO_INDEX);
+  m.front = (leaves_mesh & ((from & FROM_FRONT) != 0)) ? (Uint)(1) : (Uint)(0);
+  return m;
 }
 
 #endif

@@ -16,10 +16,12 @@
 #pragma OPENCL FP_CONTRACT OFF
 // static, so that no copy of each function is compiled for itself beside those that are inlined.
 #define FUNCTION static inline __attribute__((always_inline))
-// Fetches a line of memory that will soon be written, where a processor wants to be told.
+// Fetches a line of memory that will soon be read or written, where a processor wants to be told.
 #if defined(__clang__) && defined(__x86_64__)
+#define PREFETCH(address) __builtin_prefetch((const void*)(ulong)(address))
 #define PREFETCH_TO_WRITE(address) __builtin_prefetch((const void*)(ulong)(address), 1)
 #else
+#define PREFETCH(address)
 #define PREFETCH_TO_WRITE(address)
 #endif
 // A kernel whose SIMD is its own: a compiler that packs work-items into lanes is told not to (OpenCL 1.2, 6.7.2).
@@ -165,6 +167,9 @@ FUNCTION uint lane_bits(const Mask mask) {
 #endif
 }
 
+// And back.
+FUNCTION Mask mask_of(const uint bits) { return (((Uint)(bits) >> LANES) & 1u) != 0; }
+
 #define ANY(mask) (lane_bits(mask) != 0)
 FUNCTION uint lowest_bit(const uint bits) { return 31u - clz(bits & (0u - bits)); }
 FUNCTION uint first_lane(const Mask mask) { return lowest_bit(lane_bits(mask)); }
@@ -225,15 +230,10 @@ FUNCTION float least8(const float8 v) {
 // One lane of a Vec3.
 #define LANE3(v, lane) ((float3)(LANE((v).x, float, lane), LANE((v).y, float, lane), LANE((v).z, float, lane)))
 
-// dot3, cross3 and normalize3 of one lane.
+// dot3 and cross3 of one lane.
 FUNCTION float lane_dot3(float3 a, float3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 FUNCTION float3 lane_cross3(float3 a, float3 b) {
   return (float3)(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
-}
-// Of any size: squares of what a tiny triangle has would be 0.
-FUNCTION float3 lane_normalize3(float3 a) {
-  const float3 scaled = (1.0f / max(max(fabs(a.x), fabs(a.y)), fabs(a.z))) * a;
-  return (1.0f / sqrt(lane_dot3(scaled, scaled))) * scaled;
 }
 
 FUNCTION void set_lane3(Vec3* v, uint lane, float3 to) {
@@ -245,5 +245,7 @@ FUNCTION void set_lane3(Vec3* v, uint lane, float3 to) {
 
 FUNCTION Float max_channel(Vec3 a) { return larger(larger(a.x, a.y), a.z); }
 FUNCTION Float largest3(Vec3 a) { return larger(larger(fabs(a.x), fabs(a.y)), fabs(a.z)); }
+// normalize3 of vectors of any size: squares of what a tiny triangle has would be 0.
+FUNCTION Vec3 normalize_any3(Vec3 a) { return normalize3(scale3(1.0f / largest3(a), a)); }
 
 #endif

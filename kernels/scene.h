@@ -28,6 +28,8 @@ typedef struct {
   __global const float* positions;
   __global const float* normals;
   __global const float* texcoords;
+  __global const uint* normal_corners;       // of meshes that have normals, three a triangle; NO_INDEX in the first: flat
+  __global const uint* texcoord_corners;     // of those that have texture coordinates; NO_INDEX in the first: none
   __global const LightFace* faces;
 #endif
 #if HAS_TEXTURES
@@ -40,8 +42,10 @@ typedef struct {
 #define MESH_PARAMETERS                                                                                              \
   , __global const TreeNode *nodes, __global const TreeLeaf *leaves, __global const BodyData *bodies,                \
       __global const TriangleData *triangles, __global const float *positions, __global const float *normals,        \
-      __global const float *texcoords, __global const LightFace *faces
-#define MESH_MEMBERS , nodes, leaves, bodies, triangles, positions, normals, texcoords, faces
+      __global const float *texcoords, __global const uint *normal_corners, __global const uint *texcoord_corners,   \
+      __global const LightFace *faces
+#define MESH_MEMBERS                                                                                                 \
+  , nodes, leaves, bodies, triangles, positions, normals, texcoords, normal_corners, texcoord_corners, faces
 #else
 #define MESH_PARAMETERS
 #define MESH_MEMBERS

@@ -1,4 +1,4 @@
-// The first surface that rays meet: exact shapes WIDTH rays at a time, meshes one ray after the other.
+// The first surface that rays meet: exact shapes WIDTH rays at a time, meshes in turns.
 #ifndef VITRUM_TRACE_H
 #define VITRUM_TRACE_H
 
@@ -13,9 +13,7 @@ FUNCTION SurfacePacket trace(const Scene scene, const RayPacket packet, const Ui
                              const int textured, Uint* media) {
   SurfacePacket surface = trace_exact(scene, packet, from, textured);
 #if HAS_MESH
-  FOR_LANES(lane, active) {
-    trace_mesh(scene, &packet, LANE(from, uint, lane), lane, &surface, media);
-  }
+  trace_mesh(scene, &packet, from, active, &surface, media);
 #endif
   return surface;
 }

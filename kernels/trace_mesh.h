@@ -7,49 +7,59 @@
 #include "mesh.h"
 #include "tree.h"
 
-// Bound of the distance [m] between a place that is computed on the triangle and its plane.
-FUNCTION float triangle_error(const float3 a, const float3 b, const float3 c) {
-  const float3 largest = fmax(fmax(fabs(a), fabs(b)), fabs(c));
-  return SURFACE_ROUNDING * fmax(largest.x, fmax(largest.y, largest.z));
-}
-
-// Puts what a triangle is at the place of a hit into one lane.
-FUNCTION void set_mesh_surface(const Scene scene, const Hit hit, uint lane, SurfacePacket* surface) {
-  __global const TriangleData* triangle = &scene.triangles[hit.primitive];
-  const float3 a = corner_of(scene, triangle, 0);
-  const float3 b = corner_of(scene, triangle, 1);
-  const float3 c = corner_of(scene, triangle, 2);
-  const float w = 1.0f - hit.u - hit.v;
+// Puts what the triangles are at the places of hits into the lanes of `which`.
+FUNCTION void set_mesh_surfaces(const Scene scene, const HitPacket* hits, const Mask which, SurfacePacket* surface) {
+  const Uint primitive = which ? hits->primitive : (Uint)(0);
+  const Corners corners = corners_of(scene, primitive);
+  const Float u = hits->u;
+  const Float v = hits->v;
+  const Float w = 1.0f - u - v;
   // Near its plane however far the ray has come.
-  const float3 position = fma((float3)(hit.v), c - a, fma((float3)(hit.u), b - a, a));
-  const float3 geometric = triangle_normal(scene, triangle);
-  float3 shading = geometric;
-  if (triangle->normal[0] != NO_INDEX) {
-    const float3 n = fma((float3)(w), vload3(triangle->normal[0], scene.normals),
-                         fma((float3)(hit.u), vload3(triangle->normal[1], scene.normals),
-                             hit.v * vload3(triangle->normal[2], scene.normals)));
-    if (lane_dot3(n, geometric) > 1e-6f) shading = lane_normalize3(n);
+  const Vec3 position = along3(along3(corners.a, u, subtract3(corners.b, corners.a)), v, subtract3(corners.c, corners.a));
+  const Vec3 geometric = normal_of(&corners);
+  const Uint body = which ? hits->shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
+  Vec3 shading = geometric;
+  const Uint normals = FIELD(Uint, uint, scene.bodies, normals, body);
+  Mask is_smooth = which & (normals != NO_INDEX);
+  if (ANY(is_smooth)) {
+    const Uint place = is_smooth ? normals + 3u * primitive : (Uint)(0);
+    const Uint first = GATHER(Uint, scene.normal_corners, place);
+    is_smooth &= first != NO_INDEX;
+    const Uint a = is_smooth ? 3u * first : (Uint)(0);
+    const Uint b = is_smooth ? 3u * GATHER(Uint, scene.normal_corners + 1, place) : (Uint)(0);
+    const Uint c = is_smooth ? 3u * GATHER(Uint, scene.normal_corners + 2, place) : (Uint)(0);
+    const Vec3 n = along3(along3(scale3(v, GATHER3(scene.normals, c)), u, GATHER3(scene.normals, b)), w,
+                          GATHER3(scene.normals, a));
+    is_smooth &= dot3(n, geometric) > 1e-6f;
+    shading = select3(is_smooth, normalize_any3(n), geometric);
   }
-  SET_LANE(surface->t, float, lane, hit.t);
-  set_lane3(&surface->position, lane, position);
-  set_lane3(&surface->geometric_normal, lane, geometric);
-  set_lane3(&surface->shading_normal, lane, shading);
-  SET_LANE(surface->material, uint, lane, triangle->material);
-  SET_LANE(surface->error, float, lane, triangle_error(a, b, c));
-  SET_LANE(surface->entering, int, lane, hit.front ? -1 : 0);
-  SET_LANE(surface->from, uint, lane, FROM_MESH | hit.primitive);
+  surface->t = which ? hits->t : surface->t;
+  surface->position = select3(which, position, surface->position);
+  surface->geometric_normal = select3(which, geometric, surface->geometric_normal);
+  surface->shading_normal = select3(which, shading, surface->shading_normal);
+  surface->material = which ? FIELD(Uint, uint, scene.bodies, material, body) : surface->material;
+  surface->error = which ? triangle_error(&corners) : surface->error;
+  surface->entering = which ? hits->front != 0 : surface->entering;
+  surface->from = which ? FROM_MESH | primitive : surface->from;
 #if HAS_TEXTURES
-  float u = NAN;
-  float v = NAN;
-  if (triangle->texcoord[0] != NO_INDEX) {
-    const float2 uv = w * vload2(triangle->texcoord[0], scene.texcoords) +
-                      hit.u * vload2(triangle->texcoord[1], scene.texcoords) +
-                      hit.v * vload2(triangle->texcoord[2], scene.texcoords);
-    u = uv.x;
-    v = uv.y;
+  const Uint texcoords = FIELD(Uint, uint, scene.bodies, texcoords, body);
+  Mask is_mapped = which & (texcoords != NO_INDEX);
+  Float texture_u = NAN;
+  Float texture_v = NAN;
+  if (ANY(is_mapped)) {
+    const Uint place = is_mapped ? texcoords + 3u * primitive : (Uint)(0);
+    const Uint first = GATHER(Uint, scene.texcoord_corners, place);
+    is_mapped &= first != NO_INDEX;
+    const Uint a = is_mapped ? 2u * first : (Uint)(0);
+    const Uint b = is_mapped ? 2u * GATHER(Uint, scene.texcoord_corners + 1, place) : (Uint)(0);
+    const Uint c = is_mapped ? 2u * GATHER(Uint, scene.texcoord_corners + 2, place) : (Uint)(0);
+    texture_u = w * GATHER(Float, scene.texcoords, a) + u * GATHER(Float, scene.texcoords, b) +
+                v * GATHER(Float, scene.texcoords, c);
+    texture_v = w * GATHER(Float, scene.texcoords + 1, a) + u * GATHER(Float, scene.texcoords + 1, b) +
+                v * GATHER(Float, scene.texcoords + 1, c);
   }
-  SET_LANE(surface->u, float, lane, u);
-  SET_LANE(surface->v, float, lane, v);
+  surface->u = which ? (is_mapped ? texture_u : NAN) : surface->u;
+  surface->v = which ? (is_mapped ? texture_v : NAN) : surface->v;
 #endif
 }
 
@@ -57,35 +67,42 @@ FUNCTION void set_mesh_surface(const Scene scene, const Hit hit, uint lane, Surf
 
 // How far off each other [m] two surfaces may be found that a ray from `origin` meets at one place, which is within `error`
 // of the first: by what the triangle test makes of the way from there (tree.h).
-FUNCTION float contact_error(const float error, const float3 origin) {
-  const float3 size = fabs(origin);
-  return error + SURFACE_ROUNDING * fmax(size.x, fmax(size.y, size.z));
+FUNCTION Float contact_error(const Float error, const Vec3 origin) {
+  return error + SURFACE_ROUNDING * largest3(origin);
 }
 
-// What lies within the rounding of the transparent surface in `lane` belongs to the same event: replaces it by an opaque
-// surface, or notes the further borders.
-FUNCTION void find_contacts(const Scene scene, const Ray* ray, const Hit first, uint lane, SurfacePacket* surface) {
-  const float3 position = LANE3(surface->position, lane);
-  const float error = contact_error(LANE(surface->error, float, lane), ray->origin);
-  const float cosine = fabs(lane_dot3(ray->direction, LANE3(surface->geometric_normal, lane)));
+// An opaque exact shape in contact with glass before it wins: these lanes of `met`.
+FUNCTION Mask hidden_by_exact(const Scene scene, const RayPacket* rays, const HitPacket* hits, const Mask met,
+                              const Mask exact_is_opaque, const SurfacePacket* surface) {
+  const Corners corners = corners_of(scene, met ? hits->primitive : (Uint)(0));
+  const Float gap = (surface->t - hits->t) * fabs(dot3(rays->direction, surface->geometric_normal));
+  return met & exact_is_opaque & (gap <= contact_error(triangle_error(&corners), rays->origin));
+}
+
+// What lies within the rounding of the transparent surface in `lane` belongs to the same event: notes the further borders,
+// or is true and has put an opaque surface in the place of its hit.
+FUNCTION int find_contacts(const Scene scene, const RayPacket* rays, const uint lane, const float error,
+                           SurfacePacket* surface, HitPacket* hits) {
+  const float cosine = fabs(lane_dot3(LANE3(rays->direction, lane), LANE3(surface->geometric_normal, lane)));
+  const Hit first = hit_of(hits, lane);
   Hit near[TREE_MAX_BORDERS];
-  const uint n =
-      tree_borders_within(ray, scene.nodes, scene.leaves, first.t, first.t + error / cosine, position, error, near);
+  const uint n = tree_borders_within(rays, lane, scene.nodes, scene.leaves, first.t, first.t + error / cosine,
+                                     LANE3(surface->position, lane), error, near);
   const uint first_entering = LANE(surface->entering, int, lane) != 0;
   uint contacts = 0;
   uint places = 0;
   for (uint k = 0; k < n; ++k) {
-    __global const TriangleData* triangle = &scene.triangles[near[k].primitive];
-    if (scene.materials[triangle->material].surface != SURFACE_DIELECTRIC) {
-      set_mesh_surface(scene, near[k], lane, surface);
-      return;
+    __global const MaterialData* material = &scene.materials[body_of(scene, near[k].shape)->material];
+    if (material->surface != SURFACE_DIELECTRIC) {
+      set_hit(hits, lane, near[k]);
+      return 1;
     }
     const uint entering = near[k].front;
     if (near[k].shape == first.shape && entering == first_entering) continue;
-    if (places < MAX_CONTACTS)
-      contacts |= packed_contact(scene.materials[triangle->material].medium, entering, places++);
+    if (places < MAX_CONTACTS) contacts |= packed_contact(material->medium, entering, places++);
   }
   SET_LANE(surface->contacts, uint, lane, contacts);
+  return 0;
 }
 
 #endif
@@ -94,67 +111,92 @@ FUNCTION void find_contacts(const Scene scene, const Ray* ray, const Hit first, 
 
 // A ray that has gone into a closed mesh meets its back next, one that has gone out of it its front or nothing. Rounding
 // near edges can make it otherwise, in one of two ways.
-FUNCTION int is_astray(const Ray* ray, const Hit hit) {
-  return hit.t < INFINITY ? hit.shape == ray->shape && hit.front != ray->front : !ray->front;
+FUNCTION Mask are_astray(const MeshRays* rays, const HitPacket* hits) {
+  const Mask meets_wrong_side = (hits->shape == rays->shape) & (hits->front != rays->front);
+  return hits->t < INFINITY ? meets_wrong_side : rays->front == 0;
 }
 
 // One: rounding has put the start below the plane of the very triangle that the ray leaves, or back along a ray that grazes
 // it, by as much as the ray takes to rise from the plane. There it may still be beyond an edge, and meet a neighbour from
-// the side that it came from, or the one again that it met before. It has crossed this surface already.
-FUNCTION int is_crossed_already(const Scene scene, const Ray* ray, const Hit hit) {
-  if (hit.shape != ray->shape || !(hit.front || ray->front)) return 0;
-  const float3 normal = triangle_normal(scene, &scene.triangles[ray->primitive]);
-  return hit.t * fabs(lane_dot3(ray->direction, normal)) <= ray->error;
+// the side that it came from, or the one again that it met before. It has crossed this surface already. Of the lanes of
+// `which`, whose rays leave a triangle.
+FUNCTION Mask have_crossed_already(const Scene scene, const MeshRays* rays, const HitPacket* hits, const Mask which) {
+  const Mask in_question =
+      which & (hits->t < INFINITY) & (hits->shape == rays->shape) & ((hits->front | rays->front) != 0);
+  if (!ANY(in_question)) return in_question;
+  const Corners corners = corners_of(scene, in_question ? rays->primitive : (Uint)(0));
+  return in_question & (hits->t * fabs(dot3(rays->rays.direction, normal_of(&corners))) <= rays->error);
 }
 
 // The other: a ray that grazes an edge has slipped past it. It went in, but from where rounding has put it the mesh lies
 // behind, or the reverse. Then the stack of media is mended: the ray is on the other side.
-FUNCTION uint mended_media(const Scene scene, const Ray* ray, const uint media) {
-  const uint medium = scene.materials[scene.triangles[ray->primitive].material].medium;
-  return ray->front ? entered(scene, media, medium) : left(media, medium);
+FUNCTION void mend_media(const Scene scene, const MeshRays* rays, const Mask astray, Uint* media) {
+  FOR_LANES(lane, astray) {
+    const uint medium = scene.materials[body_of(scene, LANE(rays->shape, uint, lane))->material].medium;
+    const uint stack = LANE(*media, uint, lane);
+    SET_LANE(*media, uint, lane,
+             LANE(rays->front, uint, lane) ? entered(scene, stack, medium) : left(stack, medium));
+  }
+}
+
+// The lanes whose rays leave a closed body.
+FUNCTION Mask leave_closed(const Scene scene, const MeshRays* rays) {
+  const Mask leave = rays->shape != NO_INDEX;
+  const Uint body = leave ? rays->shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
+  return leave & (FIELD(Uint, uint, scene.bodies, closed, body) != 0);
 }
 
 #endif
 
-// Replaces the exact shape in `lane` by a triangle that comes before it.
-FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const uint from, uint lane, SurfacePacket* surface,
-                         Uint* media) {
-  Ray ray = mesh_ray(scene, packet, from, lane);
-  Hit exact;
-  exact.t = LANE(surface->t, float, lane);
-  exact.shape = LANE(surface->from, uint, lane);
-  exact.primitive = 0;
-#if HAS_CONTACTS
-  const int exact_is_opaque =
-      scene.materials[LANE(surface->material, uint, lane)].surface != SURFACE_DIELECTRIC;
-#endif
-  Hit hit = exact;
-  int found = tree_closest(&ray, scene.nodes, scene.leaves, &hit);
+// Replaces the exact shapes in the lanes of `active` by the triangles that come before them.
+FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const Uint from, const Mask active,
+                         SurfacePacket* surface, Uint* media) {
+  MeshRays rays = mesh_rays(scene, packet, from, lane_bits(active));
+  HitPacket exact;
+  exact.t = surface->t;
+  exact.shape = surface->from;
+  exact.primitive = exact.front = (Uint)(0);
+  exact.u = exact.v = 0.0f;
+  HitPacket hits = exact;
+  uint found = 0;
+  for (Mask todo = active; ANY(todo);) {
+    const uint which = lane_bits(todo);
+    found = (found & ~which) | tree_closest(&rays, which, scene.nodes, scene.leaves, &hits);
 #if HAS_DIELECTRIC
-  if (ray.shape != NO_INDEX && scene.bodies[ray.shape - (scene.n_spheres + scene.n_flats)].closed) {
-    while (hit.t < INFINITY && is_crossed_already(scene, &ray, hit)) {
-      ray.t_min = hit.t;
-      hit = exact;
-      found = tree_closest(&ray, scene.nodes, scene.leaves, &hit);
-    }
-    if (is_astray(&ray, hit)) SET_LANE(*media, uint, lane, mended_media(scene, &ray, LANE(*media, uint, lane)));
-  }
-#endif
-#if HAS_CONTACTS
-  int dielectric = !exact_is_opaque;
-  if (found) {
-    __global const TriangleData* triangle = &scene.triangles[hit.primitive];
-    dielectric = scene.materials[triangle->material].surface == SURFACE_DIELECTRIC;
-    const float error = contact_error(triangle_error(corner_of(scene, triangle, 0), corner_of(scene, triangle, 1),
-                                                     corner_of(scene, triangle, 2)), ray.origin);
-    // An opaque exact shape in contact with the glass wins.
-    const float gap = (exact.t - hit.t) * fabs(lane_dot3(ray.direction, LANE3(surface->geometric_normal, lane)));
-    if (dielectric && exact_is_opaque && gap <= error) return;
-    set_mesh_surface(scene, hit, lane, surface);
-  }
-  if (dielectric && hit.shape != NO_INDEX) find_contacts(scene, &ray, hit, lane, surface);
+    todo &= leave_closed(scene, &rays);
+    const Mask again = have_crossed_already(scene, &rays, &hits, todo);
+    mend_media(scene, &rays, todo & (again == 0) & are_astray(&rays, &hits), media);
+    rays.rays.t_min = again ? hits.t : rays.rays.t_min;
+    hits.t = again ? exact.t : hits.t;
+    hits.shape = again ? exact.shape : hits.shape;
+    hits.primitive = again ? exact.primitive : hits.primitive;
+    hits.front = again ? exact.front : hits.front;
+    todo = again;
 #else
-  if (found) set_mesh_surface(scene, hit, lane, surface);
+    todo = 0;
+#endif
+  }
+  Mask met = mask_of(found);
+#if HAS_CONTACTS
+  const Uint exact_material = active ? surface->material : (Uint)(0);
+  const Mask exact_is_opaque = FIELD(Uint, uint, scene.materials, surface, exact_material) != SURFACE_DIELECTRIC;
+  const Uint body = met ? hits.shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
+  const Uint material = met ? FIELD(Uint, uint, scene.bodies, material, body) : exact_material;
+  Mask transparent = active & (FIELD(Uint, uint, scene.materials, surface, material) == SURFACE_DIELECTRIC);
+  const Mask hidden = hidden_by_exact(scene, packet, &hits, met & transparent, exact_is_opaque, surface);
+  met &= hidden == 0;
+  transparent &= (hidden == 0) & (hits.shape != NO_INDEX);
+  while (ANY(met | transparent)) {
+    set_mesh_surfaces(scene, &hits, met, surface);
+    met = 0;
+    const Float error = contact_error(surface->error, packet->origin);
+    FOR_LANES(lane, transparent) {
+      if (find_contacts(scene, packet, lane, LANE(error, float, lane), surface, &hits)) SET_LANE(met, int, lane, -1);
+    }
+    transparent = 0;
+  }
+#else
+  if (ANY(met)) set_mesh_surfaces(scene, &hits, met, surface);
 #endif
 }
 

@@ -1,4 +1,5 @@
-// Traversal of the tree over triangles: SIMD inside the ray, 8 boxes or 4 triangles at a time.
+// Traversal of the tree over triangles: SIMD inside the ray, 8 boxes or 4 triangles at a time, and WIDTH rays in turns, so
+// that each one's next node is on its way from memory while the others go on.
 //
 // What a ray hits is decided by the triangle test alone: it is watertight (Woop, Benthin and Wald, Watertight
 // Ray/Triangle Intersection, JCGT 2013), two-sided, and edges and corners belong to the triangle. The boxes are only there
@@ -9,53 +10,58 @@
 #ifndef VITRUM_TREE_H
 #define VITRUM_TREE_H
 
-#include "ray.h"
+#include "packet.h"
 #include "tree_types.h"
 
 #pragma OPENCL FP_CONTRACT OFF
 
-// The ray as the tests want it.
+// Rays as the tests want them.
 typedef struct {
-  uint near_x, near_y, near_z;       // which plane of each axis the ray meets first, as an index into TreeNode::planes
-  float inverse_x, inverse_y, inverse_z;
-  float enter_x, enter_y, enter_z;   // t of a plane at p is p * inverse - enter, early,
-  float leave_x, leave_y, leave_z;   // or p * inverse - leave, late by the padding of the origin
-  uint kx, ky, kz;                   // axes; the direction is longest along kz
-  float origin_x, origin_y, origin_z;  // along kx, ky, kz
-  float shear_x, shear_y, inverse_kz;
-} TreeRay;
+  Uint near_x, near_y, near_z;         // which plane of each axis a ray meets first, as an index into TreeNode::planes
+  Vec3 inverse;
+  Vec3 enter, leave;                   // t of a plane at p is p * inverse - enter, early, or p * inverse - leave, late by
+                                       // the padding of the origin
+  Uint kx, ky, kz;                     // axes, as indices into TreeLeaf::corners; the direction is longest along kz
+  Vec3 origin;                         // along kx, ky, kz
+  Float shear_x, shear_y, inverse_kz;
+} TreeRays;
 
-static float tree_component(const float3 v, const uint axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+FUNCTION Float tree_component(const Vec3 v, const Uint axis) {
+  return axis == (Uint)(0) ? v.x : axis == (Uint)(1) ? v.y : v.z;
+}
 
 // Finite, so that no plane gives 0 * INFINITY; what that moves a ray by is far below the padding.
-static float tree_inverse(const float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
+FUNCTION Float tree_inverse(const Float d) {
+  return 1.0f / (fabs(d) < 1e-18f ? copysign((Float)(1e-18f), d) : d);
+}
 
-static TreeRay tree_ray(const Ray* ray) {
-  const float3 o = ray->origin, d = ray->direction, size = fabs(d);
-  TreeRay r;
-  r.inverse_x = tree_inverse(d.x);
-  r.inverse_y = tree_inverse(d.y);
-  r.inverse_z = tree_inverse(d.z);
-  r.near_x = r.inverse_x < 0.0f ? 1 : 0;
-  r.near_y = r.inverse_y < 0.0f ? 3 : 2;
-  r.near_z = r.inverse_z < 0.0f ? 5 : 4;
-  const float padding = TREE_PADDING * fmax(fabs(o.x), fmax(fabs(o.y), fabs(o.z)));
-  r.enter_x = o.x * r.inverse_x + padding * fabs(r.inverse_x);
-  r.enter_y = o.y * r.inverse_y + padding * fabs(r.inverse_y);
-  r.enter_z = o.z * r.inverse_z + padding * fabs(r.inverse_z);
-  r.leave_x = o.x * r.inverse_x - padding * fabs(r.inverse_x);
-  r.leave_y = o.y * r.inverse_y - padding * fabs(r.inverse_y);
-  r.leave_z = o.z * r.inverse_z - padding * fabs(r.inverse_z);
+FUNCTION TreeRays tree_rays(const RayPacket* rays) {
+  const Vec3 o = rays->origin, d = rays->direction;
+  TreeRays r;
+  r.inverse = make_vec3(tree_inverse(d.x), tree_inverse(d.y), tree_inverse(d.z));
+  r.near_x = r.inverse.x < 0.0f ? (Uint)(1 * TREE_WIDTH) : (Uint)(0 * TREE_WIDTH);
+  r.near_y = r.inverse.y < 0.0f ? (Uint)(3 * TREE_WIDTH) : (Uint)(2 * TREE_WIDTH);
+  r.near_z = r.inverse.z < 0.0f ? (Uint)(5 * TREE_WIDTH) : (Uint)(4 * TREE_WIDTH);
+  const Float padding = TREE_PADDING * largest3(o);
+  r.enter.x = o.x * r.inverse.x + padding * fabs(r.inverse.x);
+  r.enter.y = o.y * r.inverse.y + padding * fabs(r.inverse.y);
+  r.enter.z = o.z * r.inverse.z + padding * fabs(r.inverse.z);
+  r.leave.x = o.x * r.inverse.x - padding * fabs(r.inverse.x);
+  r.leave.y = o.y * r.inverse.y - padding * fabs(r.inverse.y);
+  r.leave.z = o.z * r.inverse.z - padding * fabs(r.inverse.z);
 
-  r.kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-  r.kx = r.kz == 2 ? 0 : r.kz + 1;
-  r.ky = r.kx == 2 ? 0 : r.kx + 1;
-  r.origin_x = tree_component(o, r.kx);
-  r.origin_y = tree_component(o, r.ky);
-  r.origin_z = tree_component(o, r.kz);
-  const float dz = tree_component(d, r.kz);
-  r.shear_x = tree_component(d, r.kx) / dz;
-  r.shear_y = tree_component(d, r.ky) / dz;
+  const Vec3 size = make_vec3(fabs(d.x), fabs(d.y), fabs(d.z));
+  const Uint zero = (Uint)(0), two = (Uint)(2);
+  const Uint z = size.x > size.y ? (size.x > size.z ? zero : two) : (size.y > size.z ? (Uint)(1) : two);
+  const Uint x = z == two ? zero : z + 1u;
+  const Uint y = x == two ? zero : x + 1u;
+  r.kx = x * TREE_LEAF_WIDTH;
+  r.ky = y * TREE_LEAF_WIDTH;
+  r.kz = z * TREE_LEAF_WIDTH;
+  r.origin = make_vec3(tree_component(o, x), tree_component(o, y), tree_component(o, z));
+  const Float dz = tree_component(d, z);
+  r.shear_x = tree_component(d, x) / dz;
+  r.shear_y = tree_component(d, y) / dz;
   r.inverse_kz = 1.0f / dz;
   return r;
 }
@@ -73,27 +79,9 @@ static uint tree_mask4(const int4 lanes) {
 static uint tree_mask8(const int8 lanes) { return tree_mask4(lanes.lo) | tree_mask4(lanes.hi) << 4; }
 #endif
 
-// Index of the lowest bit of a mask that is not 0.
-static uint tree_lowest(const uint mask) { return 31u - clz(mask & (0u - mask)); }
-
 // fmin and fmax of OpenCL are slow for what they do with NaN.
 static float8 tree_min(const float8 a, const float8 b) { return select(b, a, a < b); }
 static float8 tree_max(const float8 a, const float8 b) { return select(b, a, a > b); }
-
-// Which children's boxes the ray meets within [t_first, t_last], and where it enters them.
-static uint tree_boxes(const TreeRay* r, __global const TreeNode* node, const float t_first, const float t_last,
-                       float8* enter) {
-  __global const float* planes = &node->planes[0][0][0];
-  const float8 x0 = fma(vload8(r->near_x, planes), (float8)(r->inverse_x), (float8)(-r->enter_x));
-  const float8 y0 = fma(vload8(r->near_y, planes), (float8)(r->inverse_y), (float8)(-r->enter_y));
-  const float8 z0 = fma(vload8(r->near_z, planes), (float8)(r->inverse_z), (float8)(-r->enter_z));
-  const float8 x1 = fma(vload8(r->near_x ^ 1, planes), (float8)(r->inverse_x), (float8)(-r->leave_x));
-  const float8 y1 = fma(vload8(r->near_y ^ 1, planes), (float8)(r->inverse_y), (float8)(-r->leave_y));
-  const float8 z1 = fma(vload8(r->near_z ^ 1, planes), (float8)(r->inverse_z), (float8)(-r->leave_z));
-  *enter = tree_max(tree_max((float8)(t_first), x0), tree_max(y0, z0));
-  const float8 leave = tree_min(tree_min((float8)(t_last), x1), tree_min(y1, z1));
-  return tree_mask8(*enter <= leave);
-}
 
 // a b - c d with the right sign, and 0 only where it is 0: within 2 u of it (Jeannerod, Louvet and Muller, Further
 // analysis of Kahan's algorithm for the accurate computation of 2x2 determinants, Math. Comp. 2013).
@@ -102,21 +90,26 @@ static float4 tree_cross(const float4 a, const float4 b, const float4 c, const f
   return fma(a, b, -cd) + fma(-c, d, cd);
 }
 
-// Which triangles of a leaf the ray's line meets, at which t, with the weights of corners b and c, and whether it meets
+// Which triangles of a leaf the line of ray i meets, at which t, with the weights of corners b and c, and whether it meets
 // their fronts; meaningless elsewhere.
-static int4 tree_triangles(const TreeRay* r, __global const TreeLeaf* leaf, float4* t, float4* u, float4* v,
+static int4 tree_triangles(const TreeRays* r, const uint i, __global const TreeLeaf* leaf, float4* t, float4* u, float4* v,
                            int4* front) {
-  __global const float* corners = &leaf->corners[0][0][0];
-  const float4 az = vload4(r->kz, corners) - r->origin_z;
-  const float4 bz = vload4(r->kz + 3, corners) - r->origin_z;
-  const float4 cz = vload4(r->kz + 6, corners) - r->origin_z;
-  const float4 shear_x = -r->shear_x, shear_y = -r->shear_y;
-  const float4 ax = fma(shear_x, az, vload4(r->kx, corners) - r->origin_x);
-  const float4 bx = fma(shear_x, bz, vload4(r->kx + 3, corners) - r->origin_x);
-  const float4 cx = fma(shear_x, cz, vload4(r->kx + 6, corners) - r->origin_x);
-  const float4 ay = fma(shear_y, az, vload4(r->ky, corners) - r->origin_y);
-  const float4 by = fma(shear_y, bz, vload4(r->ky + 3, corners) - r->origin_y);
-  const float4 cy = fma(shear_y, cz, vload4(r->ky + 6, corners) - r->origin_y);
+  __global const float* a = &leaf->corners[0][0][0];
+  __global const float* b = &leaf->corners[1][0][0];
+  __global const float* c = &leaf->corners[2][0][0];
+  const uint kx = LANE(r->kx, uint, i), ky = LANE(r->ky, uint, i), kz = LANE(r->kz, uint, i);
+  const float3 origin = LANE3(r->origin, i);
+  const float inverse_kz = LANE(r->inverse_kz, float, i);
+  const float4 shear_x = -LANE(r->shear_x, float, i), shear_y = -LANE(r->shear_y, float, i);
+  const float4 az = vload4(0, a + kz) - origin.z;
+  const float4 bz = vload4(0, b + kz) - origin.z;
+  const float4 cz = vload4(0, c + kz) - origin.z;
+  const float4 ax = fma(shear_x, az, vload4(0, a + kx) - origin.x);
+  const float4 bx = fma(shear_x, bz, vload4(0, b + kx) - origin.x);
+  const float4 cx = fma(shear_x, cz, vload4(0, c + kx) - origin.x);
+  const float4 ay = fma(shear_y, az, vload4(0, a + ky) - origin.y);
+  const float4 by = fma(shear_y, bz, vload4(0, b + ky) - origin.y);
+  const float4 cy = fma(shear_y, cz, vload4(0, c + ky) - origin.y);
   const float4 weight_a = tree_cross(cx, by, cy, bx);
   const float4 weight_b = tree_cross(ax, cy, ay, cx);
   const float4 weight_c = tree_cross(bx, ay, by, ax);
@@ -130,56 +123,113 @@ static int4 tree_triangles(const TreeRay* r, __global const TreeLeaf* leaf, floa
     return met;
   }
   // The sum is -dot(direction, cross(b - a, c - a)) / d_kz.
-  *front = r->inverse_kz > 0.0f ? positive : negative;
+  *front = inverse_kz > 0.0f ? positive : negative;
   *u = weight_b / sum;
   *v = weight_c / sum;
-  *t = r->inverse_kz * fma(weight_a / sum, az, fma(*u, bz, *v * cz));
+  *t = inverse_kz * fma(weight_a / sum, az, fma(*u, bz, *v * cz));
   return met;
 }
 
-// A child on the stack, with where the ray enters it: t >= 0 orders as its bits do.
-static ulong tree_entry(const float enter, const uint child) { return (ulong)as_uint(enter) << 32 | child; }
-static float tree_enter(const ulong entry) { return as_float((uint)(entry >> 32)); }
+// WIDTH rays on their way through the tree.
+typedef struct {
+  TreeRays rays;
+  Float t_first, t_last;                  // [m], t_first >= 0: what lies outside is passed over
+  Uint child;                             // what a ray comes to next, or TREE_EMPTY
+  Uint waiting;                           // children on its stack, the closest one on top
+  float enter[WIDTH][TREE_STACK_SIZE];    // where the ray enters their boxes, at the earliest
+  uint children[WIDTH][TREE_STACK_SIZE];
+} TreeWalks;
 
-// Puts the children in `mask` on the stack, the closest one on top.
-static uint tree_push(ulong* stack, const uint base, uint mask, const float8 enter, __global const TreeNode* node) {
-  float t[TREE_WIDTH];
-  vstore8(enter, 0, t);
-  uint top = base;
-  for (; mask; mask &= mask - 1) {
-    const uint i = tree_lowest(mask);
-    const ulong entry = tree_entry(t[i], node->child[i]);
-    uint place = top++;
-    for (; place > base && stack[place - 1] < entry; --place) stack[place] = stack[place - 1];
-    stack[place] = entry;
-  }
-  return top;
+FUNCTION void tree_start(TreeWalks* walks, const RayPacket* rays, const Float t_first, const Float t_last) {
+  walks->rays = tree_rays(rays);
+  walks->t_first = t_first;
+  walks->t_last = t_last;
+  walks->child = (Uint)(0);
+  walks->waiting = (Uint)(0);
 }
 
-// The next leaf that the ray may meet within [t_first, t_last], closest boxes first, or TREE_EMPTY. The stack holds the
-// children that wait, *top of them; a traversal starts with the root there.
-static uint tree_next_leaf(const TreeRay* r, __global const TreeNode* nodes, const float t_first, const float t_last,
-                           ulong* stack, uint* top) {
-  while (*top) {
-    const ulong entry = stack[--*top];
-    if (tree_enter(entry) > t_last) continue;
-    uint child = (uint)entry;
-    while (!(child & TREE_LEAF_BIT)) {
-      __global const TreeNode* node = nodes + child;
-      float8 enter;
-      const uint mask = tree_boxes(r, node, t_first, t_last, &enter);
-      if (!mask) {
-        child = TREE_EMPTY;
-      } else if (!(mask & (mask - 1))) {
-        child = node->child[tree_lowest(mask)];
-      } else {
-        *top = tree_push(stack, *top, mask, enter, node);
-        child = (uint)stack[--*top];
-      }
-    }
-    if (child != TREE_EMPTY) return child & ~TREE_LEAF_BIT;
+// The last t before t_max > 0.
+FUNCTION Float tree_before_end(const Float t_max) { return AS_FLOAT(AS_UINT(t_max) - 1u); }
+
+static __global const TreeLeaf* tree_leaf(__global const TreeLeaf* leaves, const uint child) {
+  return leaves + (child & ~TREE_LEAF_BIT);
+}
+
+static void tree_fetch(__global const TreeNode* nodes, __global const TreeLeaf* leaves, const uint child) {
+  const ulong place = child & TREE_LEAF_BIT ? (ulong)tree_leaf(leaves, child) : (ulong)(nodes + child);
+  for (uint line = 0; line < sizeof(TreeNode); line += 64) PREFETCH(place + line);
+}
+
+// Ray i goes on to the closest child that waits, of those that it enters before t_last, `waiting` at most.
+static void tree_pop(TreeWalks* walks, const uint i, uint waiting, __global const TreeNode* nodes,
+                     __global const TreeLeaf* leaves) {
+  const float t_last = LANE(walks->t_last, float, i);
+  uint child = TREE_EMPTY;
+  while (waiting) {
+    --waiting;
+    if (walks->enter[i][waiting] > t_last) continue;
+    child = walks->children[i][waiting];
+    tree_fetch(nodes, leaves, child);
+    break;
   }
-  return TREE_EMPTY;
+  SET_LANE(walks->child, uint, i, child);
+  SET_LANE(walks->waiting, uint, i, waiting);
+}
+
+static uint8 tree_exchanged(const uint8 a, const uint8 b, const int8 greater) { return greater ? max(a, b) : min(a, b); }
+
+// In descending order: a network of Batcher's (1968), which guesses no branches.
+static uint8 tree_sorted(uint8 a) {
+  a = tree_exchanged(a, a.s10325476, (int8)(-1, 0, 0, -1, -1, 0, 0, -1));
+  a = tree_exchanged(a, a.s23016745, (int8)(-1, -1, 0, 0, 0, 0, -1, -1));
+  a = tree_exchanged(a, a.s10325476, (int8)(-1, 0, -1, 0, 0, -1, 0, -1));
+  a = tree_exchanged(a, a.s45670123, (int8)(-1, -1, -1, -1, 0, 0, 0, 0));
+  a = tree_exchanged(a, a.s23016745, (int8)(-1, -1, 0, 0, -1, -1, 0, 0));
+  return tree_exchanged(a, a.s10325476, (int8)(-1, 0, -1, 0, -1, 0, -1, 0));
+}
+
+// values[lanes[i]] in each lane i.
+static uint8 tree_chosen(const uint8 values, const uint8 lanes) {
+#if defined(__AVX2__) && !defined(VITRUM_PORTABLE)
+  return as_uint8(__builtin_ia32_permvarsi256(as_int8(values), as_int8(lanes)));
+#else
+  uint8 chosen;
+  for (uint i = 0; i < 8; ++i) ((uint*)&chosen)[i] = ((const uint*)&values)[((const uint*)&lanes)[i]];
+  return chosen;
+#endif
+}
+
+// Ray i goes on from a node to the closest of its children whose boxes it meets; the others wait. On each level at most
+// TREE_WIDTH - 1 do so, and writing all TREE_WIDTH above them stays within the stack.
+static void tree_descend(TreeWalks* walks, const uint i, __global const TreeNode* nodes, __global const TreeLeaf* leaves) {
+  __global const TreeNode* node = nodes + LANE(walks->child, uint, i);
+  __global const float* planes = &node->planes[0][0][0];
+  const TreeRays* r = &walks->rays;
+  const uint near_x = LANE(r->near_x, uint, i), near_y = LANE(r->near_y, uint, i), near_z = LANE(r->near_z, uint, i);
+  const float3 inverse = LANE3(r->inverse, i), first = LANE3(r->enter, i), last = LANE3(r->leave, i);
+  const float8 x0 = fma(vload8(0, planes + near_x), (float8)(inverse.x), (float8)(-first.x));
+  const float8 y0 = fma(vload8(0, planes + near_y), (float8)(inverse.y), (float8)(-first.y));
+  const float8 z0 = fma(vload8(0, planes + near_z), (float8)(inverse.z), (float8)(-first.z));
+  const float8 x1 = fma(vload8(0, planes + (near_x ^ TREE_WIDTH)), (float8)(inverse.x), (float8)(-last.x));
+  const float8 y1 = fma(vload8(0, planes + (near_y ^ TREE_WIDTH)), (float8)(inverse.y), (float8)(-last.y));
+  const float8 z1 = fma(vload8(0, planes + (near_z ^ TREE_WIDTH)), (float8)(inverse.z), (float8)(-last.z));
+  const float8 enter = tree_max(tree_max((float8)(LANE(walks->t_first, float, i)), x0), tree_max(y0, z0));
+  const float8 leave = tree_min(tree_min((float8)(LANE(walks->t_last, float, i)), x1), tree_min(y1, z1));
+  const int8 met = enter <= leave;
+  // t >= 0 orders as its bits do. The last three make room for the child, which puts t down.
+  const uint8 children = (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
+  const uint8 keys = tree_sorted(met ? (as_uint8(enter) & 0x7ffffff8u) | children : (uint8)(0));
+  const uint waiting = LANE(walks->waiting, uint, i);
+  vstore8(as_float8(keys & 0x7ffffff8u), 0, &walks->enter[i][waiting]);
+  vstore8(tree_chosen(vload8(0, node->child), keys & 7u), 0, &walks->children[i][waiting]);
+  tree_pop(walks, i, waiting + popcount(tree_mask8(met)), nodes, leaves);
+}
+
+// The triangles of a leaf that ray i meets in (t_first, t_last], as bits.
+static uint tree_leaf_hits(const TreeWalks* walks, const uint i, __global const TreeLeaf* leaf, float4* t, float4* u,
+                           float4* v, int4* front) {
+  const int4 met = tree_triangles(&walks->rays, i, leaf, t, u, v, front);
+  return tree_mask4(met & (*t > LANE(walks->t_first, float, i)) & (*t <= LANE(walks->t_last, float, i)));
 }
 
 static bool tree_before(const Hit* a, const Hit* b) {
@@ -203,23 +253,24 @@ static bool tree_near_plane(const float3 p, const float3 a, const float3 b, cons
   return height <= error * length(normal) + 0x1p-21f * length(ab) * length(ac) * length(ap);
 }
 
-// Does the triangle belong to the surface that the ray leaves, so that it is not met? The one that it leaves does. Of the
+// Does the triangle belong to the surface that ray i leaves, so that it is not met? The one that it leaves does. Of the
 // same body, those do which it starts from within rounding and would see from the wrong side: a ray that has gone inside
 // does not enter again through the next facet. Of others, where shapes touch, all that it starts from: they have been
 // crossed together with the one it leaves (contacts.h).
-static bool tree_left_behind(const Ray* ray, __global const TreeLeaf* leaf, const uint lane, const uint front) {
-  if (leaf->shape[lane] == ray->shape) {
-    if (leaf->primitive[lane] == ray->primitive) return true;
-    if (front == ray->front) return false;
+static bool tree_left_behind(const MeshRays* rays, const uint i, __global const TreeLeaf* leaf, const uint lane,
+                             const uint front) {
+  if (leaf->shape[lane] == LANE(rays->shape, uint, i)) {
+    if (leaf->primitive[lane] == LANE(rays->primitive, uint, i)) return true;
+    if (front == LANE(rays->front, uint, i)) return false;
   } else {
 #if HAS_CONTACTS
-    if (ray->error == 0.0f) return false;
+    if (LANE(rays->error, float, i) == 0.0f) return false;
 #else
     return false;
 #endif
   }
-  return tree_near_plane(ray->origin, tree_corner(leaf, 0, lane), tree_corner(leaf, 1, lane), tree_corner(leaf, 2, lane),
-                         ray->error);
+  return tree_near_plane(LANE3(rays->rays.origin, i), tree_corner(leaf, 0, lane), tree_corner(leaf, 1, lane),
+                         tree_corner(leaf, 2, lane), LANE(rays->error, float, i));
 }
 
 static Hit tree_hit(__global const TreeLeaf* leaf, const uint lane, const float4 t, const float4 u, const float4 v,
@@ -238,75 +289,113 @@ static Hit tree_hit(__global const TreeLeaf* leaf, const uint lane, const float4
   return hit;
 }
 
-// Replaces *hit by the first triangle in (t_min, t_max) if that comes before it. True if it does.
-static bool tree_closest(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves, Hit* hit) {
-  const TreeRay r = tree_ray(ray);
-  Hit best = *hit;
-  if (!(best.t < ray->t_max)) {
-    best.t = ray->t_max;
-    best.shape = best.primitive = 0;  // nothing at t_max comes before this
+// Which rays have come to a node, and which to a leaf, as bits; neither: to the end.
+typedef struct {
+  uint at_node, at_leaf;
+} TreePlaces;
+
+static void tree_sort_in(TreePlaces* places, const uint i, const uint child) {
+  const uint leaf = child >> 31;
+  places->at_node |= (leaf ^ 1) << i;
+  places->at_leaf |= (leaf & (uint)(child != TREE_EMPTY)) << i;
+}
+
+// One step for each ray that is at a node. Node by node and leaf by leaf, so that a processor guesses what comes next.
+static void tree_descend_each(TreePlaces* places, TreeWalks* walks, __global const TreeNode* nodes,
+                              __global const TreeLeaf* leaves) {
+  uint bits = places->at_node;
+  for (places->at_node = 0; bits; bits &= bits - 1) {
+    const uint i = lowest_bit(bits);
+    tree_descend(walks, i, nodes, leaves);
+    tree_sort_in(places, i, LANE(walks->child, uint, i));
   }
-  bool found = false;
-  ulong stack[TREE_STACK_SIZE];
-  stack[0] = tree_entry(0.0f, 0);
-  uint top = 1, next;
-  while ((next = tree_next_leaf(&r, nodes, ray->t_min, best.t, stack, &top)) != TREE_EMPTY) {
-    __global const TreeLeaf* leaf = leaves + next;
-    float4 t, u, v;
-    int4 front;
-    const int4 met = tree_triangles(&r, leaf, &t, &u, &v, &front);
-    for (uint mask = tree_mask4(met & (t > ray->t_min) & (t <= best.t)); mask; mask &= mask - 1) {
-      const uint lane = tree_lowest(mask);
-      const Hit candidate = tree_hit(leaf, lane, t, u, v, tree_mask4(front));
-      if (!tree_before(&candidate, &best) || tree_left_behind(ray, leaf, lane, candidate.front)) continue;
-      best = candidate;
-      found = true;
+}
+
+// Replaces hits by the first triangle in (t_min, t_max) if that comes before them, for each lane whose bit in `which` is
+// set. The bits of those that it replaced.
+static uint tree_closest(const MeshRays* rays, const uint which, __global const TreeNode* nodes,
+                         __global const TreeLeaf* leaves, HitPacket* hits) {
+  TreeWalks walks;
+  const Float end = rays->rays.t_max;
+  tree_start(&walks, &rays->rays, rays->rays.t_min, hits->t < end ? hits->t : tree_before_end(end));
+  uint found = 0;
+  TreePlaces places = {which, 0};
+  while (places.at_node | places.at_leaf) {
+    tree_descend_each(&places, &walks, nodes, leaves);
+    uint bits = places.at_leaf;
+    for (places.at_leaf = 0; bits; bits &= bits - 1) {
+      const uint i = lowest_bit(bits);
+      __global const TreeLeaf* leaf = tree_leaf(leaves, LANE(walks.child, uint, i));
+      float4 t, u, v;
+      int4 front;
+      const uint met = tree_leaf_hits(&walks, i, leaf, &t, &u, &v, &front);
+      for (uint mask = met; mask; mask &= mask - 1) {
+        const uint lane = lowest_bit(mask);
+        const Hit best = hit_of(hits, i), candidate = tree_hit(leaf, lane, t, u, v, tree_mask4(front));
+        if (!tree_before(&candidate, &best) || tree_left_behind(rays, i, leaf, lane, candidate.front)) continue;
+        set_hit(hits, i, candidate);
+        SET_LANE(walks.t_last, float, i, candidate.t);
+        found |= 1u << i;
+      }
+      tree_pop(&walks, i, LANE(walks.waiting, uint, i), nodes, leaves);
+      tree_sort_in(&places, i, LANE(walks.child, uint, i));
     }
   }
-  if (found) *hit = best;
   return found;
 }
 
-// Is there a triangle in (t_min, t_max)?
-static bool tree_any(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves) {
-  const TreeRay r = tree_ray(ray);
-  ulong stack[TREE_STACK_SIZE];
-  stack[0] = tree_entry(0.0f, 0);
-  uint top = 1, next;
-  while ((next = tree_next_leaf(&r, nodes, ray->t_min, ray->t_max, stack, &top)) != TREE_EMPTY) {
-    float4 t, u, v;
-    int4 front;
-    const int4 met = tree_triangles(&r, leaves + next, &t, &u, &v, &front);
-    for (uint mask = tree_mask4(met & (t > ray->t_min) & (t < ray->t_max)); mask; mask &= mask - 1) {
-      const uint lane = tree_lowest(mask);
-      if (!tree_left_behind(ray, leaves + next, lane, tree_mask4(front) >> lane & 1u)) return true;
+// Is there a triangle in (t_min, t_max)? For each lane whose bit in `which` is set, as bits.
+static uint tree_any(const MeshRays* rays, const uint which, __global const TreeNode* nodes,
+                     __global const TreeLeaf* leaves) {
+  TreeWalks walks;
+  tree_start(&walks, &rays->rays, rays->rays.t_min, tree_before_end(rays->rays.t_max));
+  uint any = 0;
+  TreePlaces places = {which, 0};
+  while (places.at_node | places.at_leaf) {
+    tree_descend_each(&places, &walks, nodes, leaves);
+    uint bits = places.at_leaf;
+    for (places.at_leaf = 0; bits; bits &= bits - 1) {
+      const uint i = lowest_bit(bits);
+      __global const TreeLeaf* leaf = tree_leaf(leaves, LANE(walks.child, uint, i));
+      float4 t, u, v;
+      int4 front;
+      uint met = tree_leaf_hits(&walks, i, leaf, &t, &u, &v, &front);
+      while (met && tree_left_behind(rays, i, leaf, lowest_bit(met), tree_mask4(front) >> lowest_bit(met) & 1u))
+        met &= met - 1;
+      if (met) {
+        any |= 1u << i;
+        continue;
+      }
+      tree_pop(&walks, i, LANE(walks.waiting, uint, i), nodes, leaves);
+      tree_sort_in(&places, i, LANE(walks.child, uint, i));
     }
   }
-  return false;
+  return any;
 }
 
 #define TREE_MAX_BORDERS 4
 
 // The first TREE_MAX_BORDERS borders at t_first <= t <= t_last, t_first >= 0, of triangles whose planes are within
-// `error` [m] of `place`, in order; returns how many there are in `hits`. The triangles of a shape that are met from one
-// side are one border, since at an edge or a corner a ray meets several: the first of them counts. For surfaces in
-// contact; the ray's own t_min and t_max and what it leaves do not matter.
-static uint tree_borders_within(const Ray* ray, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
-                                const float t_first, const float t_last, const float3 place, const float error,
-                                Hit hits[TREE_MAX_BORDERS]) {
-  const TreeRay r = tree_ray(ray);
+// `error` [m] of `place`, in order, for one of the rays; returns how many there are in `hits`. The triangles of a shape that
+// are met from one side are one border, since at an edge or a corner a ray meets several: the first of them counts. For
+// surfaces in contact; the rays' own t_min and t_max and what they leave do not matter.
+static uint tree_borders_within(const RayPacket* rays, const uint i, __global const TreeNode* nodes,
+                                __global const TreeLeaf* leaves, const float t_first, const float t_last,
+                                const float3 place, const float error, Hit hits[TREE_MAX_BORDERS]) {
+  TreeWalks walks;
+  tree_start(&walks, rays, t_first, t_last);
   uint count = 0;
-  float t_end = t_last;
-  ulong stack[TREE_STACK_SIZE];
-  stack[0] = tree_entry(0.0f, 0);
-  uint top = 1, next;
-  while ((next = tree_next_leaf(&r, nodes, t_first, t_end, stack, &top)) != TREE_EMPTY) {
-    __global const TreeLeaf* leaf = leaves + next;
+  for (uint child; (child = LANE(walks.child, uint, i)) != TREE_EMPTY;) {
+    if (!(child & TREE_LEAF_BIT)) {
+      tree_descend(&walks, i, nodes, leaves);
+      continue;
+    }
+    __global const TreeLeaf* leaf = tree_leaf(leaves, child);
     float4 t, u, v;
     int4 front;
-    const int4 met = tree_triangles(&r, leaf, &t, &u, &v, &front);
-    for (uint mask = tree_mask4(met & (t >= t_first) & (t <= t_end)); mask; mask &= mask - 1) {
-      const uint lane = tree_lowest(mask);
+    const int4 met = tree_triangles(&walks.rays, i, leaf, &t, &u, &v, &front);
+    for (uint mask = tree_mask4(met & (t >= t_first) & (t <= LANE(walks.t_last, float, i))); mask; mask &= mask - 1) {
+      const uint lane = lowest_bit(mask);
       const float3 a = tree_corner(leaf, 0, lane), b = tree_corner(leaf, 1, lane), c = tree_corner(leaf, 2, lane);
       if (!tree_near_plane(place, a, b, c, error)) continue;
       const Hit candidate = tree_hit(leaf, lane, t, u, v, tree_mask4(front));
@@ -319,7 +408,8 @@ static uint tree_borders_within(const Ray* ray, __global const TreeNode* nodes, 
       for (; slot > 0 && tree_before(&candidate, &hits[slot - 1]); --slot) hits[slot] = hits[slot - 1];
       hits[slot] = candidate;
     }
-    if (count == TREE_MAX_BORDERS) t_end = hits[TREE_MAX_BORDERS - 1].t;
+    if (count == TREE_MAX_BORDERS) SET_LANE(walks.t_last, float, i, hits[TREE_MAX_BORDERS - 1].t);
+    tree_pop(&walks, i, LANE(walks.waiting, uint, i), nodes, leaves);
   }
   return count;
 }

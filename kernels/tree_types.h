@@ -18,8 +18,8 @@
 // tree.h says why this is enough for the traversal to find whatever the triangle test would hit.
 #define TREE_PADDING 0x1p-18f
 
-// Triangles that a ray can name (FROM_TRIANGLE in surface.h).
-#define TREE_MAX_TRIANGLES 0x3fffffffu
+// Triangles that a ray can name (FROM_TRIANGLE in surface.h), of which a gather of four words each has indices below 2^31.
+#define TREE_MAX_TRIANGLES 0x1fffffffu
 
 // Coordinates up to here [m] neither overflow nor underflow in the triangle test.
 #define TREE_MAX_COORDINATE 1e12f

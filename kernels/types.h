@@ -32,15 +32,15 @@ typedef struct {
 // The triangles of a mesh that have one material; to rays a shape of its own.
 typedef struct {
   uint closed;                 // 1: of a dielectric, and each edge has faces on both sides: who enters it leaves it
+  uint material;
+  uint normals;                // its triangle t has the normals normal_corners[normals + 3 t] and following, with wrap-around;
+                               // NO_INDEX: it is flat
+  uint texcoords;              // the same for texture coordinates; NO_INDEX: it has none
 } BodyData;
 
-// A triangle's corners as indices into the buffers of positions, normals and texture coordinates. The tree's `primitive`
-// is its index among the triangles of all meshes.
+// A triangle's corners as indices of positions. The tree's `primitive` is its index among the triangles of all meshes.
 typedef struct {
   uint position[3];
-  uint normal[3];              // NO_INDEX in [0]: flat
-  uint texcoord[3];            // NO_INDEX in [0]: none
-  uint material;
   uint shape;                  // after the exact shapes: the body's index
 } TriangleData;
 

@@ -91,7 +91,7 @@ BODY follow_chains(const Scene scene, __global const float* edges, const uint n_
     photons.direction = start.direction;
     photons.power = make_vec3(1.0f, 1.0f, 1.0f);
     photons.t_min = 0.0f;
-    photons.stack = aim->distance > 0.0f ? 0u : scene.materials[scene.triangles[0].material].medium;
+    photons.stack = aim->distance > 0.0f ? 0u : scene.materials[scene.bodies[0].material].medium;
     photons.from = NO_INDEX;
     photons.path = hash_pair(number, (Uint)(aim->seed + 77u));
     photons.history = 0;

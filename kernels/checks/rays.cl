@@ -1,31 +1,51 @@
 // kernels/tree.h by itself, for `vitrum bench`. Reads the tree and `rays`, eight floats each: origin, t_min, direction,
-// t_max.
+// t_max. WIDTH rays a work-item.
 #include "tree.h"
 
-static Ray ray_of(__global const float* rays, const uint i) {
-  return free_ray(vload3(0, rays + 8 * i), vload3(0, rays + 8 * i + 4), rays[8 * i + 3], rays[8 * i + 7]);
+static MeshRays rays_of(__global const float* rays, const uint first, const uint end) {
+  MeshRays taken;
+  for (uint i = first; i < end; ++i) {
+    const uint lane = i - first;
+    set_lane3(&taken.rays.origin, lane, vload3(0, rays + 8 * i));
+    SET_LANE(taken.rays.t_min, float, lane, rays[8 * i + 3]);
+    set_lane3(&taken.rays.direction, lane, vload3(0, rays + 8 * i + 4));
+    SET_LANE(taken.rays.t_max, float, lane, rays[8 * i + 7]);
+  }
+  taken.shape = taken.primitive = (Uint)(TREE_EMPTY);
+  taken.front = (Uint)(0);
+  taken.error = 0.0f;
+  return taken;
 }
 
+// The lanes of rays that there are, as bits.
+static uint lanes_of(const uint first, const uint end) { return (2u << (end - first - 1)) - 1; }
+
 // Where each ray meets the first triangle, INFINITY: nowhere; and which that is.
-__kernel void closest(const uint count, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
-                      __global const float* rays, __global float* t, __global uint* primitive) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const Ray ray = ray_of(rays, i);
-  Hit hit;
-  hit.t = INFINITY;
-  hit.shape = hit.primitive = TREE_EMPTY;
-  hit.u = hit.v = 0.0f;
-  tree_closest(&ray, nodes, leaves, &hit);
-  t[i] = hit.t;
-  primitive[i] = hit.primitive;
+KERNEL void closest(const uint count, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
+                    __global const float* rays, __global float* t, __global uint* primitive) {
+  const uint first = get_global_id(0) * WIDTH;
+  const uint end = min(count, first + WIDTH);
+  if (first >= end) return;
+  const MeshRays taken = rays_of(rays, first, end);
+  HitPacket hits;
+  hits.t = INFINITY;
+  hits.shape = hits.primitive = (Uint)(TREE_EMPTY);
+  hits.u = hits.v = 0.0f;
+  hits.front = (Uint)(0);
+  tree_closest(&taken, lanes_of(first, end), nodes, leaves, &hits);
+  for (uint i = first; i < end; ++i) {
+    t[i] = LANE(hits.t, float, i - first);
+    primitive[i] = LANE(hits.primitive, uint, i - first);
+  }
 }
 
 // 1 for each ray that meets a triangle.
-__kernel void occluded(const uint count, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
-                       __global const float* rays, __global uint* met) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const Ray ray = ray_of(rays, i);
-  met[i] = tree_any(&ray, nodes, leaves);
+KERNEL void occluded(const uint count, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
+                     __global const float* rays, __global uint* met) {
+  const uint first = get_global_id(0) * WIDTH;
+  const uint end = min(count, first + WIDTH);
+  if (first >= end) return;
+  const MeshRays taken = rays_of(rays, first, end);
+  const uint any = tree_any(&taken, lanes_of(first, end), nodes, leaves);
+  for (uint i = first; i < end; ++i) met[i] = any >> (i - first) & 1u;
 }

@@ -22,6 +22,8 @@ DeviceScene upload(Device& device, const SceneData& data, const Features& featur
     d.positions = device.upload(data.positions, "meshes");
     d.normals = device.upload(data.normals, "meshes");
     d.texcoords = device.upload(data.texcoords, "meshes");
+    d.normal_corners = device.upload(data.normal_corners, "meshes");
+    d.texcoord_corners = device.upload(data.texcoord_corners, "meshes");
     d.faces = device.upload(data.faces, "lights");
   }
   d.has_textures = features.textures;
@@ -40,8 +42,9 @@ unsigned DeviceScene::set_arguments(cl::Kernel& kernel) const {
   vitrum::set_arguments(kernel, 0, spheres, flats, materials, media, interfaces, lights, n_spheres, n_flats, n_media);
   unsigned next = 9;
   if (has_mesh) {
-    vitrum::set_arguments(kernel, next, nodes, leaves, bodies, triangles, positions, normals, texcoords, faces);
-    next += 8;
+    vitrum::set_arguments(kernel, next, nodes, leaves, bodies, triangles, positions, normals, texcoords,
+                          normal_corners, texcoord_corners, faces);
+    next += 10;
   }
   if (has_textures) {
     vitrum::set_arguments(kernel, next, textures, texels);

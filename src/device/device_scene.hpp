@@ -21,6 +21,7 @@ struct DeviceScene {
   Buffer<kernel::BodyData> bodies;
   Buffer<kernel::TriangleData> triangles;
   Buffer<float> positions, normals, texcoords;
+  Buffer<uint32_t> normal_corners, texcoord_corners;
   Buffer<kernel::LightFace> faces;
   // With Features::textures; without texels until upload_texels.
   bool has_textures = false;

@@ -151,31 +151,39 @@ class Builder {
     }
   }
 
+  /// Adds what the triangles of a mesh, of which the first is `first_triangle`, have at their corners, from `first_value` on.
+  /// Returns BodyData::normals or BodyData::texcoords.
+  static uint32_t add_corners(const std::vector<glm::uvec3>& indices, uint32_t first_triangle, uint32_t first_value,
+                              std::vector<uint32_t>& corners) {
+    if (indices.empty()) return NO_INDEX;
+    const auto start = static_cast<uint32_t>(corners.size());
+    for (const glm::uvec3& triangle : indices)
+      for (int k = 0; k < 3; ++k) corners.push_back(triangle.x == none ? NO_INDEX : first_value + triangle[k]);
+    return start - 3 * first_triangle;
+  }
+
   void add_mesh(const Shape& shape, const Mesh& mesh) {
     const uint32_t first = static_cast<uint32_t>(data_.triangles.size());
     const uint32_t first_position = static_cast<uint32_t>(data_.positions.size() / 3);
     const uint32_t first_normal = static_cast<uint32_t>(data_.normals.size() / 3);
-    const uint32_t first_texcoord = static_cast<uint32_t>(data_.texcoords.size() / 2);
     for (const glm::vec3& p : mesh.positions) data_.positions.insert(data_.positions.end(), {p.x, p.y, p.z});
     for (const glm::vec3& n : mesh.normals) data_.normals.insert(data_.normals.end(), {n.x, n.y, n.z});
-    for (const glm::vec2& t : mesh.texcoords) data_.texcoords.insert(data_.texcoords.end(), {t.x, t.y});
+    const uint32_t normals = add_corners(mesh.normal_indices, first, first_normal, data_.normal_corners);
+    uint32_t texcoords = NO_INDEX;
+    if (features_.textures) {
+      const uint32_t first_texcoord = static_cast<uint32_t>(data_.texcoords.size() / 2);
+      texcoords = add_corners(mesh.texcoord_indices, first, first_texcoord, data_.texcoord_corners);
+      for (const glm::vec2& t : mesh.texcoords) data_.texcoords.insert(data_.texcoords.end(), {t.x, t.y});
+    }
     std::map<uint32_t, uint32_t> body_of;  // by material
     for (const Body& body : bodies_of(mesh)) {
+      const bool closed = body.closed && scene_.materials[body.material].surface == Surface::dielectric;
       body_of[body.material] = static_cast<uint32_t>(data_.bodies.size());
-      data_.bodies.push_back({body.closed && scene_.materials[body.material].surface == Surface::dielectric});
+      data_.bodies.push_back({closed, body.material + 1, normals, texcoords});
     }
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-      kernel::TriangleData t{};
-      const bool smooth = !mesh.normal_indices.empty() && mesh.normal_indices[i].x != none;
-      const bool mapped = !mesh.texcoord_indices.empty() && mesh.texcoord_indices[i].x != none;
-      for (int k = 0; k < 3; ++k) {
-        t.position[k] = first_position + mesh.triangles[i][k];
-        t.normal[k] = smooth ? first_normal + mesh.normal_indices[i][k] : NO_INDEX;
-        t.texcoord[k] = mapped ? first_texcoord + mesh.texcoord_indices[i][k] : NO_INDEX;
-      }
-      t.material = mesh.materials[i] + 1;
-      t.shape = body_of.at(mesh.materials[i]);
-      data_.triangles.push_back(t);
+      const glm::uvec3 t = first_position + mesh.triangles[i];
+      data_.triangles.push_back({{t.x, t.y, t.z}, body_of.at(mesh.materials[i])});
     }
     first_triangle_[&shape - scene_.shapes.data()] = first;
   }

@@ -19,6 +19,7 @@ struct SceneData {
   std::vector<kernel::BodyData> bodies;
   std::vector<kernel::TriangleData> triangles;
   std::vector<float> positions, normals, texcoords;
+  std::vector<uint32_t> normal_corners, texcoord_corners;
   std::vector<TreeTriangle> tree_triangles;       ///< in the order of `triangles`; `primitive` counts over all meshes
   std::vector<kernel::MaterialData> materials;
   std::vector<kernel::MediumData> media;

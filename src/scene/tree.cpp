@@ -1,16 +1,14 @@
 #include "scene/tree.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <new>
 #include <string>
-#include <type_traits>
+
+#include "scene/wide_nodes.hpp"
 
 namespace vitrum {
 
@@ -19,61 +17,9 @@ namespace {
 using kernel::TreeLeaf;
 using kernel::TreeNode;
 
-/// Embree's builder makes these in its own memory, in an order that hangs on the threads; flatten() puts them in order.
-struct BuiltNode {
-  uint32_t children = 0;                                ///< 0: a leaf
-  uint32_t triangles = 0;                               ///< of a leaf
-  union {
-    BuiltNode* child[TREE_WIDTH];                       ///< of a node
-    uint32_t triangle[TREE_LEAF_WIDTH];                 ///< of a leaf: indices into the triangles
-  };
-  RTCBounds bounds[TREE_WIDTH];                         ///< of a node: its children's. Not allocated for a leaf.
-};
-
-void* create_node(RTCThreadLocalAllocator allocator, unsigned int children, void*) {
-  auto* node = static_cast<BuiltNode*>(rtcThreadLocalAlloc(allocator, sizeof(BuiltNode), alignof(BuiltNode)));
-  node->children = children;
-  return node;
-}
-
-void set_children(void* node, void** children, unsigned int count, void*) {
-  for (unsigned int i = 0; i < count; ++i)
-    static_cast<BuiltNode*>(node)->child[i] = static_cast<BuiltNode*>(children[i]);
-}
-
-void set_bounds(void* node, const RTCBounds** bounds, unsigned int count, void*) {
-  for (unsigned int i = 0; i < count; ++i) static_cast<BuiltNode*>(node)->bounds[i] = *bounds[i];
-}
-
-void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*) {
-  assert(count <= TREE_LEAF_WIDTH);
-  auto* leaf = static_cast<BuiltNode*>(
-      rtcThreadLocalAlloc(allocator, offsetof(BuiltNode, bounds), alignof(BuiltNode)));
-  leaf->children = 0;
-  leaf->triangles = static_cast<uint32_t>(count);
-  for (size_t i = 0; i < count; ++i) leaf->triangle[i] = primitives[i].primID;
-  return leaf;
-}
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
-using Bvh = std::unique_ptr<std::remove_pointer_t<RTCBVH>, Release>;
-
 [[noreturn]] void out_of_memory(size_t triangles) {
   throw Error({}, "not enough memory for the tree over " + std::to_string(triangles) + " triangles",
               "use meshes with fewer triangles");
-}
-
-/// Throws unless `made`, with what Embree says about it.
-void check(bool made, RTCDevice device, size_t triangles) {
-  if (made) return;
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_OUT_OF_MEMORY) out_of_memory(triangles);
-  throw Error({}, "Embree failed with its error " + std::to_string(error) + " at building the tree",
-              "check that Debian's libembree3 fits this machine");
 }
 
 /// Can a ray hit it, and has it a normal? False for what is not finite.
@@ -97,13 +43,13 @@ std::vector<RTCBuildPrimitive> build_primitives(std::span<const TreeTriangle> tr
   return primitives;
 }
 
-/// Copies what Embree built into the flat arrays, depth first, so that the result hangs on the tree alone.
+/// Puts wide nodes and leaves into the flat arrays, depth first, so that the result hangs on the tree alone.
 class Flattener {
  public:
   Flattener(std::span<const TreeTriangle> triangles, Tree& tree) : triangles_(triangles), tree_(tree) {}
 
-  void flatten(const BuiltNode* root) {
-    if (root == nullptr || root->children == 0) {
+  void flatten(const BinaryNode* root) {
+    if (root == nullptr || root->is_leaf()) {
       tree_.nodes.push_back(empty_node());
       tree_.statistics.depth = 1;
       tree_.statistics.stack = 1;
@@ -136,10 +82,10 @@ class Flattener {
     node.child[slot] = child;
   }
 
-  RTCBounds bounds_of(const BuiltNode& leaf) const {
+  RTCBounds bounds_of(const BinaryNode& leaf) const {
     glm::vec3 low(INFINITY), high(-INFINITY);
     for (uint32_t i = 0; i < leaf.triangles; ++i) {
-      const TreeTriangle& t = triangles_[leaf.triangle[i]];
+      const TreeTriangle& t = triangles_[leaf.leaf.triangle[i]];
       low = glm::min(low, glm::min(t.a, glm::min(t.b, t.c)));
       high = glm::max(high, glm::max(t.a, glm::max(t.b, t.c)));
     }
@@ -147,23 +93,23 @@ class Flattener {
   }
 
   /// `waiting` is how many entries lie on the stack at worst when a traversal comes to this node.
-  uint32_t node(const BuiltNode& built, int depth, int waiting) {
-    const int children = static_cast<int>(built.children);
+  uint32_t node(const BinaryNode& built, int depth, int waiting) {
+    const std::vector<WideChild> children = wide_children(built, TREE_MAX_DEPTH - depth + 1);
+    const int count = static_cast<int>(children.size());
     tree_.statistics.depth = std::max(tree_.statistics.depth, depth);
-    tree_.statistics.stack = std::max(tree_.statistics.stack, waiting + children);
+    tree_.statistics.stack = std::max(tree_.statistics.stack, waiting + count);
     const auto index = static_cast<uint32_t>(tree_.nodes.size());
     tree_.nodes.push_back(empty_node());
-    for (int i = 0; i < children; ++i) {
-      const BuiltNode& child = *built.child[i];
-      const uint32_t reference = child.children == 0 ? leaf(child) : node(child, depth + 1, waiting + children - 1);
-      set_child(index, i, built.bounds[i], reference);
+    for (int i = 0; i < count; ++i) {
+      const BinaryNode& child = *children[i].node;
+      set_child(index, i, children[i].bounds, child.is_leaf() ? leaf(child) : node(child, depth + 1, waiting + count - 1));
     }
     return index;
   }
 
-  uint32_t leaf(const BuiltNode& built) {
+  uint32_t leaf(const BinaryNode& built) {
     std::array<uint32_t, TREE_LEAF_WIDTH> order;
-    const auto last = std::copy_n(built.triangle, built.triangles, order.begin());
+    const auto last = std::copy_n(built.leaf.triangle, built.triangles, order.begin());
     std::sort(order.begin(), last);
     TreeLeaf& leaf = tree_.leaves.emplace_back();
     for (auto& corner : leaf.corners)
@@ -213,38 +159,15 @@ Tree build_tree(std::span<const TreeTriangle> triangles, unsigned threads) {
   const auto start = std::chrono::steady_clock::now();
   if (triangles.size() >= TREE_MAX_TRIANGLES)
     throw Error({}, std::to_string(triangles.size()) + " triangles are more than a ray can name",
-                "use meshes with fewer than 2^30 triangles");
+                "use meshes with fewer than 2^29 triangles");
   Tree tree;
   try {
     std::vector<RTCBuildPrimitive> primitives = build_primitives(triangles);
     tree.statistics.triangles = primitives.size();
     tree.statistics.dropped = triangles.size() - primitives.size();
-
-    const Device device(rtcNewDevice(("threads=" + std::to_string(threads)).c_str()));
-    check(device != nullptr, nullptr, triangles.size());
-    const Bvh bvh(rtcNewBVH(device.get()));
-    check(bvh != nullptr, device.get(), triangles.size());
-
-    RTCBuildArguments arguments = rtcDefaultBuildArguments();
-    arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
-    arguments.maxBranchingFactor = TREE_WIDTH;
-    arguments.maxDepth = TREE_MAX_DEPTH;
-    arguments.sahBlockSize = TREE_LEAF_WIDTH;
-    arguments.minLeafSize = TREE_LEAF_WIDTH;  // a leaf costs the same however many of its lanes are full
-    arguments.maxLeafSize = TREE_LEAF_WIDTH;
-    arguments.bvh = bvh.get();
-    arguments.primitives = primitives.data();
-    arguments.primitiveCount = arguments.primitiveArrayCapacity = primitives.size();
-    arguments.createNode = create_node;
-    arguments.setNodeChildren = set_children;
-    arguments.setNodeBounds = set_bounds;
-    arguments.createLeaf = create_leaf;
-    const void* root = nullptr;
-    if (!primitives.empty()) {
-      root = rtcBuildBVH(&arguments);
-      check(root != nullptr, device.get(), triangles.size());
-    }
-    Flattener(triangles, tree).flatten(static_cast<const BuiltNode*>(root));
+    const BinaryTree binary(std::move(primitives), threads);
+    if (binary.root() != nullptr && !binary.root()->is_leaf()) weigh(*binary.root());
+    Flattener(triangles, tree).flatten(binary.root());
     assert(tree.statistics.depth <= TREE_MAX_DEPTH && tree.statistics.stack <= TREE_STACK_SIZE);
   } catch (const std::bad_alloc&) {
     out_of_memory(triangles.size());

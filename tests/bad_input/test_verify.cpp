@@ -59,7 +59,7 @@ TEST_CASE("verify catches a wrong formula and names the check") {
                {"slab-and-ball", "photons"},
                {"slab-and-ball/touching layers", "slab-and-ball/mesh shells", "slab-and-ball/mesh shells: facets",
                 "photons/mesh shells"});
-  check_caught({"trace_mesh.h", "if (lane_dot3(n, geometric) > 1e-6f) shading = lane_normalize3(n);", ""},
+  check_caught({"trace_mesh.h", "shading = select3(is_smooth, normalize_any3(n), geometric);", ""},
                {"slab-and-ball"}, {"slab-and-ball/mesh ball", "slab-and-ball/mesh ball: rim", "slab-and-ball/mesh shells: facets"});
 }
 

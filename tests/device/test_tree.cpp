@@ -43,19 +43,20 @@ const char* const kernel_text = R"(
 
 // Every leaf, without the tree, again and again: the first hits of TREE_MAX_BORDERS borders, in (t_min, t_max) or
 // [t_min, t_max].
-uint brute(const Ray* ray, __global const TreeLeaf* leaves, uint n_leaves, int closed, Hit* hits) {
-  const TreeRay r = tree_ray(ray);
+uint brute(const RayPacket* rays, uint lane, __global const TreeLeaf* leaves, uint n_leaves, int closed, Hit* hits) {
+  const TreeRays r = tree_rays(rays);
+  const float t_min = LANE(rays->t_min, float, lane), t_max = LANE(rays->t_max, float, lane);
   uint count = 0;
   for (int found = 1; found && count < TREE_MAX_BORDERS; count += found) {
     found = 0;
     for (uint n = 0; n < n_leaves; ++n) {
       float4 t, u, v;
       int4 front;
-      const int4 met = tree_triangles(&r, leaves + n, &t, &u, &v, &front);
+      const int4 met = tree_triangles(&r, lane, leaves + n, &t, &u, &v, &front);
       for (uint i = 0; i < TREE_LEAF_WIDTH; ++i) {
         if (!(tree_mask4(met) >> i & 1)) continue;
         const Hit hit = tree_hit(leaves + n, i, t, u, v, tree_mask4(front));
-        if (closed ? hit.t < ray->t_min || hit.t > ray->t_max : hit.t <= ray->t_min || hit.t >= ray->t_max) continue;
+        if (closed ? hit.t < t_min || hit.t > t_max : hit.t <= t_min || hit.t >= t_max) continue;
         int known = 0;
         for (uint k = 0; k < count; ++k) known |= hits[k].shape == hit.shape && hits[k].front == hit.front;
         if (known || (found && !tree_before(&hit, &hits[count]))) continue;
@@ -67,63 +68,122 @@ uint brute(const Ray* ray, __global const TreeLeaf* leaves, uint n_leaves, int c
   return count;
 }
 
+HitPacket nothing() {
+  HitPacket hits;
+  hits.t = INFINITY;
+  hits.shape = hits.primitive = (Uint)(TREE_EMPTY);
+  hits.u = hits.v = 0.0f;
+  hits.front = (Uint)(0);
+  return hits;
+}
+
+// Rays that leave no triangle.
+MeshRays free_rays() {
+  MeshRays rays;
+  rays.shape = rays.primitive = (Uint)(TREE_EMPTY);
+  rays.front = (Uint)(0);
+  rays.error = 0.0f;
+  return rays;
+}
+
 typedef struct {
   Hit closest, brute, within[TREE_MAX_BORDERS], brute_within[TREE_MAX_BORDERS];
   uint any, within_count, brute_count, found;
 } Result;
 
+// WIDTH rays a work-item, of which every fourth packet leaves out every other.
 __kernel void trace(__global const TreeNode* nodes, __global const TreeLeaf* leaves, uint n_leaves,
                     __global const float* rays, __global Result* results) {
-  const size_t i = get_global_id(0);
-  const Ray ray = free_ray(vload3(0, rays + 8 * i), vload3(0, rays + 8 * i + 3), rays[8 * i + 6], rays[8 * i + 7]);
-  Hit none, hits[TREE_MAX_BORDERS];
-  none.t = INFINITY;
-  none.shape = none.primitive = TREE_EMPTY;
-  none.u = none.v = 0.0f;
-  none.front = 0;
+  const size_t item = get_global_id(0);
+  MeshRays packet = free_rays();
+  for (uint i = 0; i < WIDTH; ++i) {
+    __global const float* ray = rays + 8 * (WIDTH * item + i);
+    set_lane3(&packet.rays.origin, i, vload3(0, ray));
+    set_lane3(&packet.rays.direction, i, vload3(0, ray + 3));
+    SET_LANE(packet.rays.t_min, float, i, ray[6]);
+    SET_LANE(packet.rays.t_max, float, i, ray[7]);
+  }
+  const uint all = lane_bits(LANES < (Uint)(WIDTH)), some = item % 4 == 3 ? all & 0x5555u : all;
+  HitPacket closest = nothing();
+  uint found = tree_closest(&packet, some, nodes, leaves, &closest);
+  uint any = tree_any(&packet, some, nodes, leaves);
+  // Neither says or changes anything of those left out.
+  int wrong = ((found | any) & ~some) != 0;
+  for (uint bits = all & ~some; bits; bits &= bits - 1) wrong |= LANE(closest.t, float, lowest_bit(bits)) != INFINITY;
+  if (wrong) found = any = 0;
+  if (some != all) {
+    found |= tree_closest(&packet, all & ~some, nodes, leaves, &closest);
+    any |= tree_any(&packet, all & ~some, nodes, leaves);
+  }
 
-  Result result;
-  result.closest = none;
-  result.found = tree_closest(&ray, nodes, leaves, &result.closest);
-  result.any = tree_any(&ray, nodes, leaves);
-  result.brute = brute(&ray, leaves, n_leaves, 0, hits) ? hits[0] : none;
-  for (uint k = 0; k < TREE_MAX_BORDERS; ++k) result.within[k] = result.brute_within[k] = none;
-  result.within_count = tree_borders_within(&ray, nodes, leaves, ray.t_min, ray.t_max, ray.origin, INFINITY,
-                                            result.within);
-  result.brute_count = brute(&ray, leaves, n_leaves, 1, result.brute_within);
-  results[i] = result;
+  const HitPacket empty = nothing();
+  for (uint i = 0; i < WIDTH; ++i) {
+    const Hit none = hit_of(&empty, i);
+    Hit hits[TREE_MAX_BORDERS];
+    Result result;
+    result.closest = hit_of(&closest, i);
+    result.found = found >> i & 1;
+    result.any = any >> i & 1;
+    result.brute = brute(&packet.rays, i, leaves, n_leaves, 0, hits) ? hits[0] : none;
+    for (uint k = 0; k < TREE_MAX_BORDERS; ++k) result.within[k] = result.brute_within[k] = none;
+    result.within_count =
+        tree_borders_within(&packet.rays, i, nodes, leaves, LANE(packet.rays.t_min, float, i),
+                            LANE(packet.rays.t_max, float, i), LANE3(packet.rays.origin, i), INFINITY, result.within);
+    result.brute_count = brute(&packet.rays, i, leaves, n_leaves, 1, result.brute_within);
+    results[WIDTH * item + i] = result;
+  }
 }
 
-// *hit may hold a hit already.
+// hits may hold some already; u is the ray's t_max.
 __kernel void improve(__global const TreeNode* nodes, __global const TreeLeaf* leaves, __global Hit* hits,
                       __global uint* found) {
-  const size_t i = get_global_id(0);
-  const Ray ray = free_ray((float3)(0.25f, 0.25f, 1.0f), (float3)(0.0f, 0.0f, -1.0f), 0.0f, hits[i].u);
-  Hit hit = hits[i];
-  found[i] = tree_closest(&ray, nodes, leaves, &hit);
-  hits[i] = hit;
-  found[i] |= tree_any(&ray, nodes, leaves) ? 2 : 0;
+  const size_t first = WIDTH * get_global_id(0);
+  MeshRays packet = free_rays();
+  packet.rays.origin = make_vec3(0.25f, 0.25f, 1.0f);
+  packet.rays.direction = make_vec3(0.0f, 0.0f, -1.0f);
+  packet.rays.t_min = 0.0f;
+  HitPacket held;
+  for (uint i = 0; i < WIDTH; ++i) {
+    set_hit(&held, i, hits[first + i]);
+    SET_LANE(packet.rays.t_max, float, i, hits[first + i].u);
+  }
+  const uint all = lane_bits(LANES < (Uint)(WIDTH));
+  const uint replaced = tree_closest(&packet, all, nodes, leaves, &held), any = tree_any(&packet, all, nodes, leaves);
+  for (uint i = 0; i < WIDTH; ++i) {
+    hits[first + i] = hit_of(&held, i);
+    found[first + i] = (replaced >> i & 1) | (any >> i & 1) << 1;
+  }
 }
 )";
 
-/// The device with both ways to read a mask from a vector.
+/// A way to build the kernels: rays of a packet, with the processor's own instructions or without.
+struct Build {
+  uint32_t width;
+  const char* options;
+};
+constexpr Build builds[] = {{16, "-DWIDTH=16 "}, {8, "-DWIDTH=8 "}, {1, "-DWIDTH=1 -DVITRUM_PORTABLE "}};
+constexpr size_t whole_groups = 16 * 64;    ///< of rays
+
 struct TreeTracer {
   OpenClHarness cl;
-  std::array<cl::Program, 2> kernels{cl.build(kernel_text), cl.build(kernel_text, "-DVITRUM_PORTABLE")};
+  std::vector<cl::Program> programs;
 
+  TreeTracer() {
+    for (const Build& build : builds) programs.push_back(cl.build(kernel_text, build.options));
+  }
   static const TreeTracer& get() {
     static const TreeTracer tracer;
     return tracer;
   }
 };
 
-std::vector<Result> trace(const std::vector<TreeTriangle>& triangles, std::vector<RayData> rays, bool portable = false) {
+std::vector<Result> trace(const std::vector<TreeTriangle>& triangles, std::vector<RayData> rays, size_t build = 0) {
   const TreeTracer& tracer = TreeTracer::get();
   const Tree tree = build_tree(triangles);
   const size_t count = rays.size();
-  rays.resize((count + 63) / 64 * 64, rays.back());
+  rays.resize((count + whole_groups - 1) / whole_groups * whole_groups, rays.back());
   const cl::Buffer results = tracer.cl.upload(std::vector<Result>(rays.size()));
-  tracer.cl.run(tracer.kernels[portable], "trace", rays.size(), tracer.cl.upload(tree.nodes),
+  tracer.cl.run(tracer.programs[build], "trace", rays.size() / builds[build].width, tracer.cl.upload(tree.nodes),
                 tracer.cl.upload(tree.leaves), static_cast<uint32_t>(tree.leaves.size()), tracer.cl.upload(rays),
                 results);
   return tracer.cl.download<Result>(results, count);
@@ -271,11 +331,14 @@ TEST_CASE("soups of triangles, of many sizes and at many places") {
     const auto results = trace(triangles, rays);
     check_against_leaves(results);
     check_against_double(triangles, rays, results);
-    const auto portable = trace(triangles, rays, true);
-    check_against_leaves(portable);
-    size_t differ = 0;
-    for (size_t i = 0; i < rays.size(); ++i) differ += portable[i].closest != results[i].closest;
-    CHECK(differ == 0);
+    for (size_t build = 1; build < std::size(builds); ++build) {
+      CAPTURE(builds[build].options);
+      const auto others = trace(triangles, rays, build);
+      check_against_leaves(others);
+      size_t differ = 0;
+      for (size_t i = 0; i < rays.size(); ++i) differ += others[i].closest != results[i].closest;
+      CHECK(differ == 0);
+    }
   }
 }
 
@@ -419,21 +482,24 @@ TEST_CASE("a hit that is there already is only replaced by one that comes before
                         {{INFINITY, ~0u, ~0u, 1, 0}, false, false},
                         {{1, ~0u, 0, 1, 0}, false, false},
                         {{INFINITY, ~0u, ~0u, 1.01f, 0}, true, true}};
-  std::vector<HitData> held(64);
+  std::vector<HitData> held(whole_groups);
   for (size_t i = 0; i < std::size(cases); ++i) held[i] = cases[i].held;
-  const cl::Buffer hits = tracer.cl.upload(held), found = tracer.cl.upload(std::vector<uint32_t>(64));
-  tracer.cl.run(tracer.kernels[0], "improve", 64, tracer.cl.upload(tree.nodes), tracer.cl.upload(tree.leaves), hits,
-                found);
-  const auto after = tracer.cl.download<HitData>(hits, 64);
-  const auto replaced = tracer.cl.download<uint32_t>(found, 64);
-  for (size_t i = 0; i < std::size(cases); ++i) {
-    CAPTURE(i);
-    CHECK((replaced[i] & 1) == cases[i].replaced);
-    CHECK((replaced[i] >> 1) == cases[i].any);
-    if (cases[i].replaced)
-      CHECK(after[i] == HitData{1, 4, 6, 0.25f, 0.25f, 1});
-    else
-      CHECK(after[i] == cases[i].held);
+  for (size_t build = 0; build < std::size(builds); ++build) {
+    const cl::Buffer hits = tracer.cl.upload(held), found = tracer.cl.upload(std::vector<uint32_t>(whole_groups));
+    tracer.cl.run(tracer.programs[build], "improve", whole_groups / builds[build].width, tracer.cl.upload(tree.nodes),
+                  tracer.cl.upload(tree.leaves), hits, found);
+    const auto after = tracer.cl.download<HitData>(hits, std::size(cases));
+    const auto replaced = tracer.cl.download<uint32_t>(found, std::size(cases));
+    for (size_t i = 0; i < std::size(cases); ++i) {
+      CAPTURE(builds[build].options);
+      CAPTURE(i);
+      CHECK((replaced[i] & 1) == cases[i].replaced);
+      CHECK((replaced[i] >> 1) == cases[i].any);
+      if (cases[i].replaced)
+        CHECK(after[i] == HitData{1, 4, 6, 0.25f, 0.25f, 1});
+      else
+        CHECK(after[i] == cases[i].held);
+    }
   }
 }
 

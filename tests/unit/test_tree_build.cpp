@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "scene/tree.hpp"
+#include "scene/wide_nodes.hpp"
 
 using namespace vitrum;
 
@@ -198,4 +198,50 @@ TEST_CASE("meshes of a scene, and nothing else, become triangles") {
                        "a.toml:12:3: shape 'far' reaches further than 1e12 m from the origin; "
                        "check its unit, its transform and its file",
                        Error);
+}
+
+namespace {
+
+/// What a ray is expected to spend below `node`, and how many levels of wide nodes there are from it on.
+struct Spent {
+  float cost = 0.0f;
+  int levels = 1;
+};
+
+Spent spent(const BinaryNode& node, int levels) {
+  REQUIRE(levels > 0);
+  const std::vector<WideChild> children = wide_children(node, levels);
+  CHECK(children.size() >= 2);
+  CHECK(children.size() <= TREE_WIDTH);
+  Spent sum;
+  for (const auto& [child, b] : children) {
+    const float x = b.upper_x - b.lower_x, y = b.upper_y - b.lower_y, z = b.upper_z - b.lower_z;
+    sum.cost += x * y + y * z + z * x;
+    if (child->is_leaf()) continue;
+    const Spent below = spent(*child, levels - 1);
+    sum.cost += below.cost;
+    sum.levels = std::max(sum.levels, 1 + below.levels);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("wide nodes cost what was weighed, less than the flattest, and no more levels than there may be") {
+  for (const size_t count : {9, 300, 20000}) {
+    CAPTURE(count);
+    std::vector<RTCBuildPrimitive> boxes;
+    for (const TreeTriangle& t : soup(count, 0.02f)) {
+      const glm::vec3 low = glm::min(t.a, glm::min(t.b, t.c)), high = glm::max(t.a, glm::max(t.b, t.c));
+      boxes.push_back({low.x, low.y, low.z, 0, high.x, high.y, high.z, static_cast<uint32_t>(boxes.size())});
+    }
+    const BinaryTree binary(boxes, 1);
+    weigh(*binary.root());
+    const int least_levels = (binary.root()->height + 2) / 3;
+    const Spent best = spent(*binary.root(), TREE_MAX_DEPTH), flattest = spent(*binary.root(), least_levels);
+    CHECK(best.cost == doctest::Approx(binary.root()->cost[TREE_WIDTH - 1]).epsilon(1e-4));
+    CHECK(flattest.levels <= least_levels);
+    CHECK(best.cost <= flattest.cost);
+    if (count == 20000) CHECK(best.cost < 0.97f * flattest.cost);
+  }
 }

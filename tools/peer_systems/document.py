@@ -222,15 +222,14 @@ WHY = {
                "([limits.md](limits.md)).",
     "scaling": "It falls: in its first pass a process touches all of its memory for the first time, in pages that the system "
                "clears one by one. From 10^7 photons on it is flat.",
-    "traversal": "Rays of one direction nearly keep up; the rest wait for the caches, with some 40 % more bytes a triangle. "
-                 "The kernel is portable OpenCL C, one ray after the other, and as watertight.",
+    "traversal": "Where a tree fits the caches, rays of one direction meet few nodes each, and Embree's code for one ray is as "
+                 "short as ours; WIDTH rays in turns gain where nodes come from memory (`kernels/tree.h`).",
     "gather": "A query looks at 2.9 times the photons that it finds, those in the cells about it, and those of random queries "
               "come from memory ([limits.md](limits.md)). The nanoflann of the goal did .44 and .10 M queries/s, this one does "
               "more (below).",
     "start": "PoCL takes .7 s to compile the smallest program of all, and .1 to .5 s for each of five to seven kernels, one after "
              "the other, since its compiler cannot run twice in a process; warm, it still preprocesses the source.",
-    "memory": "Boxes are floats, eight at a node, and a leaf has its triangles' corners at hand, where Embree looks them up by "
-              "index. Boxes of a byte a plane would do; they are not built.",
+    "memory": "Boxes are floats, eight at a node, and a leaf has its triangles' corners at hand.",
 }
 
 
