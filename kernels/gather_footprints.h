@@ -48,7 +48,7 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
 }
 
 // Irradiance [W/m2] at p on the side of the unit normal n, and the number of `photons` that it is made of.
-FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, uint* photons) {
+FUNCTION float3 irradiance_at(const PhotonMap* map, float3 p, float3 n, uint* photons) {
   Sums sums = no_sums();
   for (uint level = 0; level < LEVELS; ++level) add_cell(map, p, n, level, &sums);
   *photons = photons_in(&sums);

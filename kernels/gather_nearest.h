@@ -194,7 +194,7 @@ FUNCTION Sums power_within(const PhotonTreeData* tree, __global const float* nod
 // Irradiance [W/m2] at p on the side of the unit normal n: power of the k nearest over the area of the circle around them
 // (Jensen 2001, section 7.2), or of all those within the greatest radius over its circle where they are fewer. `photons`:
 // their number.
-FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, uint* photons) {
+FUNCTION float3 irradiance_at(const PhotonMap* map, float3 p, float3 n, uint* photons) {
   const float limit = map->max_radius * map->max_radius;
   const float radius2 = nearest_radius2(&map->tree, map->nodes, map->leaves, p, n, map->nearest, limit);
   const Sums sums = power_within(&map->tree, map->nodes, map->leaves, p, n, radius2);

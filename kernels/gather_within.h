@@ -1,25 +1,87 @@
-// Photons within a fixed radius of a place. Included by gather.h.
+// Photons within a fixed radius of places: which cells to look at, WIDTH places at a time; then, place by place, the photons in
+// them, a batch at a time. Included by gather.h.
 #ifndef VITRUM_GATHER_WITHIN_H
 #define VITRUM_GATHER_WITHIN_H
 
 // Whether all photons of a bucket count for a surface, however far they are: the same sums, in the same order, of those
 // corners of its boxes where they are greatest, so that rounding does not matter.
-FUNCTION int all_on_surface(__global const BucketData* bucket, float3 p, float3 n, float max_off_plane) {
-  const float3 low = vload3(0, bucket->low) - p;
-  const float3 high = vload3(0, bucket->high) - p;
-  const float3 low_direction = vload3(0, bucket->low_direction);
-  const float3 high_direction = vload3(0, bucket->high_direction);
-  const int3 up = n > 0.0f;
-  const float3 before = (up ? high : low) * n;
-  const float3 behind = (up ? low : high) * n;
-  const float3 along = (up ? high_direction : low_direction) * n;
-  return before.x + before.y + before.z <= max_off_plane && behind.x + behind.y + behind.z >= -max_off_plane &&
-         along.x + along.y + along.z < 0.0f;
+FUNCTION Mask all_on_surface(const PhotonMap* map, const Uint bucket, const Vec3 p, const Vec3 n, const float max_off_plane) {
+  const Vec3 low = subtract3(FIELD3(map->buckets, low, bucket), p);
+  const Vec3 high = subtract3(FIELD3(map->buckets, high, bucket), p);
+  const Vec3 low_direction = FIELD3(map->buckets, low_direction, bucket);
+  const Vec3 high_direction = FIELD3(map->buckets, high_direction, bucket);
+  const Mask up_x = n.x > 0.0f;
+  const Mask up_y = n.y > 0.0f;
+  const Mask up_z = n.z > 0.0f;
+  const Vec3 before = multiply3(make_vec3(up_x ? high.x : low.x, up_y ? high.y : low.y, up_z ? high.z : low.z), n);
+  const Vec3 behind = multiply3(make_vec3(up_x ? low.x : high.x, up_y ? low.y : high.y, up_z ? low.z : high.z), n);
+  const Vec3 along = multiply3(make_vec3(up_x ? high_direction.x : low_direction.x,
+                                         up_y ? high_direction.y : low_direction.y,
+                                         up_z ? high_direction.z : low_direction.z), n);
+  return (before.x + before.y + before.z <= max_off_plane) & (behind.x + behind.y + behind.z >= -max_off_plane) &
+         (along.x + along.y + along.z < 0.0f);
+}
+
+// Photons [first, last) of a bucket that starts at MAP_BLOCK * start.
+typedef struct {
+  uint start, first, last;
+  uint sure;                   // all of them count for the surface, if only they are near
+} PhotonRange;
+// Nine rows of three cells, each in a bucket of its own at worst.
+#define MAX_PHOTON_RANGES 27
+
+// The photons in the cells around places, as ranges, and how many these are.
+typedef struct {
+  uint count[WIDTH];
+  PhotonRange ranges[WIDTH][MAX_PHOTON_RANGES];
+} Neighbourhoods;
+
+FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, const float max_off_plane, const Mask which,
+                           Neighbourhoods* around) {
+  const GridData grid = map->grid;
+  const Uint x = cell_coordinates(p.x, grid.inverse_cell);
+  const Uint y = cell_coordinates(p.y, grid.inverse_cell);
+  const Uint z = cell_coordinates(p.z, grid.inverse_cell);
+  const uint size_x = 1u << grid.log2_x;
+  const Uint x_first = (x - 1u) & (size_x - 1u);
+  Uint asked = (Uint)0xffffffffu;  // the buckets that `sure` is of
+  Mask sure = 0;
+  for (uint lane = 0; lane < WIDTH; ++lane) around->count[lane] = 0;
+  for (int dz = first_neighbour(grid.log2_z); dz <= last_neighbour(grid.log2_z); ++dz) {
+    for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
+      // Three cells in a row, in one range unless the grid wraps or a bucket ends between them.
+      const Uint row = rows_of_cells(grid, y + (uint)dy, z + (uint)dz);
+      const Uint row_end = row + size_x;
+      Uint cell = row + x_first;
+      Uint left = (Uint)3;
+      while (ANY(left > 0u)) {
+        const Uint bucket = cell >> grid.bucket_shift;
+        const Uint bucket_end = (bucket + 1u) << grid.bucket_shift;
+        const Uint end = min(cell + left, min(row_end, bucket_end));
+        const Uint first = GATHER(Uint, map->first_of_cell, bucket + cell);
+        const Uint last = GATHER(Uint, map->first_of_cell, bucket + end);
+        const Mask filled = which & (left > 0u) & (first < last);
+        if (ANY(filled)) {
+          if (ANY(filled & (bucket != asked))) sure = all_on_surface(map, bucket, p, n, max_off_plane);
+          asked = bucket;
+          const Uint start = FIELD(Uint, uint, map->buckets, start, bucket);
+          FOR_LANES(lane, filled) {
+            PhotonRange* range = &around->ranges[lane][around->count[lane]++];
+            range->start = LANE(start, uint, lane);
+            range->first = LANE(first, uint, lane);
+            range->last = LANE(last, uint, lane);
+            range->sure = LANE(sure, int, lane) != 0;
+          }
+        }
+        left -= end - cell;
+        cell = end == row_end ? row : end;
+      }
+    }
+  }
 }
 
 // [gather]
-// Adds the photons [first, last) of a bucket: Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the
-// irradiance convolved with it. `sure`: all of them are known to count for the surface, if only they are near.
+// Adds photons of a range: Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the irradiance convolved with it.
 FUNCTION void add_photons(__global const float* bucket, uint first, uint last, float3 p, float3 n, float inverse_r2,
                           float max_off_plane, const int sure, Sums* sums) {
   for (uint i = first / BATCH * BATCH; i < last; i += BATCH) {
@@ -40,45 +102,31 @@ FUNCTION void add_photons(__global const float* bucket, uint first, uint last, f
 }
 // [/gather]
 
-// Irradiance [W/m2] at p on the side of the unit normal n, and the number of `photons` that it is made of.
-FUNCTION float3 gathered_irradiance(const PhotonMap* map, float3 p, float3 n, uint* photons) {
-  const GridData grid = map->grid;
+// Irradiance [W/m2] at places p on the side of unit normals n, in the lanes of `which`; adds the number of photons that it is
+// made of to *gathered, and of pairs of them, each twice, to *pairs.
+FUNCTION Vec3 gathered_irradiance(const PhotonMap* map, const Vec3 p, const Vec3 n, const Mask which, ulong* gathered,
+                                  ulong* pairs) {
   const float inverse_r2 = 1.0f / (map->radius * map->radius);
   const float max_off_plane = PLANE_SHARE * map->radius;
-  const int x = cell_coordinate(p.x, grid.inverse_cell);
-  const int y = cell_coordinate(p.y, grid.inverse_cell);
-  const int z = cell_coordinate(p.z, grid.inverse_cell);
-  const uint size_x = 1u << grid.log2_x;
-  const uint x_first = (uint)(x - 1) & (size_x - 1u);
-  Sums sums = no_sums();
-  uint asked = 0xffffffffu;  // the bucket that `sure` is of
-  int sure = 0;
-  for (int dz = first_neighbour(grid.log2_z); dz <= last_neighbour(grid.log2_z); ++dz) {
-    for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
-      // Three cells in a row, in one range unless the grid wraps or a bucket ends between them.
-      const uint row = row_of_cells(grid, y + dy, z + dz);
-      uint cell = row + x_first;
-      for (uint left = 3; left > 0;) {
-        const uint bucket = cell >> grid.bucket_shift;
-        const uint bucket_end = (bucket + 1) << grid.bucket_shift;
-        const uint end = min(cell + left, min(row + size_x, bucket_end));
-        __global const uint* first_of = map->first_of_cell + bucket;
-        const uint first = first_of[cell];
-        const uint last = first_of[end];
-        if (first < last) {
-          if (bucket != asked) sure = all_on_surface(map->buckets + bucket, p, n, max_off_plane);
-          asked = bucket;
-          __global const float* of_bucket = photons_of_bucket(map, bucket);
-          if (sure) add_photons(of_bucket, first, last, p, n, inverse_r2, max_off_plane, 1, &sums);
-          else add_photons(of_bucket, first, last, p, n, inverse_r2, max_off_plane, 0, &sums);
-        }
-        left -= end - cell;
-        cell = end == row + size_x ? row : end;
-      }
+  Neighbourhoods around;
+  find_photons(map, p, n, max_off_plane, which, &around);
+  Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
+  FOR_LANES(lane, which) {
+    const float3 place = LANE3(p, lane);
+    const float3 normal = LANE3(n, lane);
+    Sums sums = no_sums();
+    for (uint k = 0; k < around.count[lane]; ++k) {
+      const PhotonRange r = around.ranges[lane][k];
+      __global const float* bucket = map->photons + (ulong)r.start * MAP_BLOCK;
+      if (r.sure) add_photons(bucket, r.first, r.last, place, normal, inverse_r2, max_off_plane, 1, &sums);
+      else add_photons(bucket, r.first, r.last, place, normal, inverse_r2, max_off_plane, 0, &sums);
     }
+    const ulong photons = photons_in(&sums);
+    *gathered += photons;
+    *pairs += photons * (photons - 1);
+    set_lane3(&irradiance, lane, total_power(&sums) * (2.0f * 0.318309886183790672f * inverse_r2));
   }
-  *photons = photons_in(&sums);
-  return total_power(&sums) * (2.0f * 0.318309886183790672f * inverse_r2);
+  return irradiance;
 }
 
 #endif

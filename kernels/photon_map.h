@@ -174,17 +174,19 @@ FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
   const uint z = (uint)iz & ((1u << grid.log2_z) - 1u);
   return ((z << grid.log2_y) | y) << grid.log2_x;
 }
-
 FUNCTION uint cell_of_level(const GridData grid, uint level, int ix, int iy, int iz) {
   const uint x = ((uint)ix + (level << grid.log2_x >> 2)) & ((1u << grid.log2_x) - 1u);
   return row_of_cells(grid, iy + (int)(level << grid.log2_y >> 2), iz + (int)(level << grid.log2_z >> 2)) | x;
 }
 
+FUNCTION Uint rows_of_cells(const GridData grid, const Uint iy, const Uint iz) {
+  const Uint y = iy & ((1u << grid.log2_y) - 1u);
+  const Uint z = iz & ((1u << grid.log2_z) - 1u);
+  return ((z << grid.log2_y) | y) << grid.log2_x;
+}
 FUNCTION Uint cells_of(const GridData grid, const Vec3 p) {
   const Uint ix = cell_coordinates(p.x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
-  const Uint iy = cell_coordinates(p.y, grid.inverse_cell) & ((1u << grid.log2_y) - 1u);
-  const Uint iz = cell_coordinates(p.z, grid.inverse_cell) & ((1u << grid.log2_z) - 1u);
-  return ((iz << grid.log2_y) | iy) << grid.log2_x | ix;
+  return rows_of_cells(grid, cell_coordinates(p.y, grid.inverse_cell), cell_coordinates(p.z, grid.inverse_cell)) | ix;
 }
 
 // Steps to the first and to the last of the cells around one along an axis of 2^log2 cells, each cell once.

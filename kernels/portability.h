@@ -152,6 +152,17 @@ FUNCTION Vec3 larger3(Vec3 a, Vec3 b) { return make_vec3(larger(a.x, b.x), large
 FUNCTION Vec3 smaller3(Vec3 a, Vec3 b) { return make_vec3(smaller(a.x, b.x), smaller(a.y, b.y), smaller(a.z, b.z)); }
 
 #ifdef __OPENCL_VERSION__
+// Three floats from `index` on, another index in each lane.
+#define GATHER3(array, index)                                                                                        \
+  make_vec3(GATHER(Float, array, index), GATHER(Float, (array) + 1, index), GATHER(Float, (array) + 2, index))
+
+// Fields of a table of structs, another entry in each lane. A struct's size is a multiple of 4 bytes.
+#define FIELD(type, element, table, field, index)                                                                    \
+  GATHER(type, (__global const element*)&(table)->field, (index) * (uint)(sizeof(*(table)) / 4))
+#define FIELD3(table, field, index)                                                                                  \
+  make_vec3(FIELD(Float, float, table, field[0], index), FIELD(Float, float, table, field[1], index),                \
+            FIELD(Float, float, table, field[2], index))
+
 // A bit for each lane of a mask that is set.
 FUNCTION uint lane_bits(const Mask mask) {
 #if WIDTH == 1

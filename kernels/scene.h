@@ -71,15 +71,4 @@ typedef struct {
 // The same vector in every lane.
 FUNCTION Vec3 uniform3(__global const float* values) { return make_vec3(values[0], values[1], values[2]); }
 
-// Three floats from `index` on, another index in each lane.
-#define GATHER3(array, index)                                                                                        \
-  make_vec3(GATHER(Float, array, index), GATHER(Float, (array) + 1, index), GATHER(Float, (array) + 2, index))
-
-// Fields of a table of structs, another entry in each lane. A struct's size is a multiple of 4 bytes.
-#define FIELD(type, element, table, field, index)                                                                    \
-  GATHER(type, (__global const element*)&(table)->field, (index) * (uint)(sizeof(*(table)) / 4))
-#define FIELD3(table, field, index)                                                                                  \
-  make_vec3(FIELD(Float, float, table, field[0], index), FIELD(Float, float, table, field[1], index),                \
-            FIELD(Float, float, table, field[2], index))
-
 #endif

@@ -142,12 +142,9 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, 
         gathers &= drawn == 0;
       }
 #endif
-      FOR_LANES(lane, gathers) {
-        uint photons;
-        set_lane3(&irradiance, lane, gathered_irradiance(&map, LANE3(surface.position, lane),
-                                                         LANE3(shading.scattering.normal, lane), &photons));
-        gathered += photons;
-        pairs += photons * (photons - (ulong)1);
+      if (ANY(gathers)) {
+        const Vec3 found = gathered_irradiance(&map, surface.position, shading.scattering.normal, gathers, &gathered, &pairs);
+        irradiance = select3(gathers, found, irradiance);
       }
       const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));
       radiance = select3(lit, add3(radiance, caustic), radiance);

@@ -99,7 +99,7 @@ class Gathering {
     const auto places = static_cast<uint32_t>(truth.size());
     set_arguments(kernel_, 0, places, queries_);
     set_arguments(kernel_, set_map_arguments(kernel_, 2, nearest ? tree_ : run_.map(), scene_), irradiance_);
-    device_.launch("checks", kernel_, places);
+    device_.launch("checks", kernel_, (places + device_.width() - 1) / device_.width());
     const std::vector<float> values = device_.read(irradiance_, 0, irradiance_.size());
     std::vector<double> red;
     for (size_t k = 0; k < places; ++k) red.push_back(static_cast<double>(values[3 * k]));
