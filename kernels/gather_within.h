@@ -27,8 +27,9 @@ typedef struct {
   uint start, first, last;
   uint sure;                   // all of them count for the surface, if only they are near
 } PhotonRange;
-// Nine rows of three cells, each in a bucket of its own at worst.
+// Nine rows of cells, each in three buckets at worst.
 #define MAX_PHOTON_RANGES 27
+#define MAX_CELLS_OF_ROW (1u << LEAST_LOG2_BUCKET)
 
 // The photons in the cells around places, as ranges, and how many these are.
 typedef struct {
@@ -36,31 +37,50 @@ typedef struct {
   PhotonRange ranges[WIDTH][MAX_PHOTON_RANGES];
 } Neighbourhoods;
 
+// How far it is [cells] to the row of cells that is `step` beside that of a place, which is at `coordinate` [cells], at least.
+// Of two rows in all, the other one is on both sides.
+FUNCTION Float gap_to_row(const Float coordinate, const int step, const uint log2) {
+  if (step == 0) return 0.0f;
+  const Float above = coordinate - floor(coordinate);
+  const Float gap = log2 == 1 ? smaller(above, 1.0f - above) : step < 0 ? above : 1.0f - above;
+  return larger(gap - 0x1p-22f * fabs(coordinate), (Float)0.0f);
+}
+
 FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, const float max_off_plane, const Mask which,
                            Neighbourhoods* around) {
   const GridData grid = map->grid;
-  const Uint x = cell_coordinates(p.x, grid.inverse_cell);
-  const Uint y = cell_coordinates(p.y, grid.inverse_cell);
-  const Uint z = cell_coordinates(p.z, grid.inverse_cell);
+  const Uint iy = cell_coordinates(p.y, grid.inverse_cell);
+  const Uint iz = cell_coordinates(p.z, grid.inverse_cell);
   const uint size_x = 1u << grid.log2_x;
-  const Uint x_first = (x - 1u) & (size_x - 1u);
+  // Rounding: of x here and of the photons'. Beyond, places are hardly told apart.
+  const Float off_x = smaller(0x1p-22f * fabs(p.x * grid.inverse_cell_x), (Float)3.0f) / grid.inverse_cell_x;
   Uint asked = (Uint)0xffffffffu;  // the buckets that `sure` is of
   Mask sure = 0;
   for (uint lane = 0; lane < WIDTH; ++lane) around->count[lane] = 0;
   for (int dz = first_neighbour(grid.log2_z); dz <= last_neighbour(grid.log2_z); ++dz) {
+    const Float gap_z = gap_to_row(p.z * grid.inverse_cell, dz, grid.log2_z);
     for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
-      // Three cells in a row, in one range unless the grid wraps or a bucket ends between them.
-      const Uint row = rows_of_cells(grid, y + (uint)dy, z + (uint)dz);
+      // The cells of the row that the radius reaches, in one range unless the grid wraps or a bucket ends between them. A cell
+      // is wider than the radius by more than what is lost to rounding.
+      const Float gap_y = gap_to_row(p.y * grid.inverse_cell, dy, grid.log2_y);
+      const Float reach2 = 1.0f - gap_y * gap_y - gap_z * gap_z;
+      const Mask reaches = which & (reach2 > 0.0f);
+      if (!ANY(reaches)) continue;
+      const Float reach = sqrt(larger(reach2, (Float)0.0f)) / grid.inverse_cell + off_x;
+      const Uint x_first = cell_coordinates(p.x - reach, grid.inverse_cell_x);
+      const Uint x_last = cell_coordinates(p.x + reach, grid.inverse_cell_x);
+      const Uint row = rows_of_cells(grid, iy + (uint)dy, iz + (uint)dz);
       const Uint row_end = row + size_x;
-      Uint cell = row + x_first;
-      Uint left = (Uint)3;
+      Uint cell = row + (x_first & (size_x - 1u));
+      Uint left = min(x_last - x_first + 1u, min(size_x, MAX_CELLS_OF_ROW));
+      left = reaches ? left : (Uint)0;
       while (ANY(left > 0u)) {
         const Uint bucket = cell >> grid.bucket_shift;
         const Uint bucket_end = (bucket + 1u) << grid.bucket_shift;
         const Uint end = min(cell + left, min(row_end, bucket_end));
         const Uint first = GATHER(Uint, map->first_of_cell, bucket + cell);
         const Uint last = GATHER(Uint, map->first_of_cell, bucket + end);
-        const Mask filled = which & (left > 0u) & (first < last);
+        const Mask filled = (left > 0u) & (first < last);
         if (ANY(filled)) {
           if (ANY(filled & (bucket != asked))) sure = all_on_surface(map, bucket, p, n, max_off_plane);
           asked = bucket;

@@ -10,10 +10,11 @@
 // is at first_of_cell[cell + bucket], since each bucket has one more entry: where its last cell ends.
 //
 // The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
-// far photons cost nothing but a failed test of distance. Of the 3 x 3 x 3 cells around a place each is visited once,
-// also where the grid has fewer along an axis. Cells along x are neighbours in memory; there are at least 4 of them.
+// far photons cost nothing but a failed test of distance. Cells are a radius wide along y and z, and half of it along x, where
+// neighbours follow each other in memory; there are at least 16 of these, all in one bucket. Of the 3 x 3 rows of cells around a
+// place each is visited once, also where the grid has fewer.
 //
-// With footprints, a photon in the map has a kernel of its own, a tent over a parallelogram (footprint.h): rows and fields are
+// With footprints, cells are cubes, and a photon in the map has a kernel of its own, a tent over a parallelogram (footprint.h): rows and fields are
 // those of MAP_ROW and MAP_FIELDS then, and power is in W/m2. A large footprint is cut into several, and each is an entry of
 // all cells that it reaches into. What a run stores is where photons arrived.
 //
@@ -130,9 +131,12 @@ typedef struct {
   float largest;               // sides beyond that are cut [m]
 } FootprintLimits;
 
-// Cell size [m] as its inverse; log2 of the number of cells along each axis, and of those in a bucket.
+// Cell size [m] as its inverse, along x and along y and z; log2 of the number of cells along each axis, and of those in a
+// bucket.
+#define CELLS_ALONG_X 2        // to one along y or z; not with footprints
+#define LEAST_LOG2_BUCKET 4u   // so that the cells of a row that are looked at lie in three buckets at most
 typedef struct {
-  float inverse_cell;
+  float inverse_cell_x, inverse_cell;
   uint log2_x, log2_y, log2_z;
   uint bucket_shift;
 } GridData;
@@ -185,7 +189,7 @@ FUNCTION Uint rows_of_cells(const GridData grid, const Uint iy, const Uint iz) {
   return ((z << grid.log2_y) | y) << grid.log2_x;
 }
 FUNCTION Uint cells_of(const GridData grid, const Vec3 p) {
-  const Uint ix = cell_coordinates(p.x, grid.inverse_cell) & ((1u << grid.log2_x) - 1u);
+  const Uint ix = cell_coordinates(p.x, grid.inverse_cell_x) & ((1u << grid.log2_x) - 1u);
   return rows_of_cells(grid, cell_coordinates(p.y, grid.inverse_cell), cell_coordinates(p.z, grid.inverse_cell)) | ix;
 }
 

@@ -38,7 +38,7 @@ static_assert(sizeof(TextureData) == 48);
 static_assert(sizeof(CameraData) == 72);
 static_assert(sizeof(CameraSample) == 24);
 static_assert(sizeof(PhotonRunData) == 228);
-static_assert(sizeof(GridData) == 20);
+static_assert(sizeof(GridData) == 24);
 static_assert(sizeof(BucketData) == 52);
 
 }  // namespace vitrum::kernel

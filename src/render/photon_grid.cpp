@@ -28,12 +28,12 @@ uint32_t whole_units(uint32_t rows) { return (rows + 1) / 2 * 2; }
 uint32_t pilot_size(uint64_t count) { return static_cast<uint32_t>(std::clamp<uint64_t>(count / 128, 1024, 65536)); }
 
 uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p) {
-  const auto coordinate = [&grid](float x, uint32_t log2) {
-    const float cell = std::clamp(std::floor(x * grid.inverse_cell), -1e9f, 1e9f);
+  const auto coordinate = [](float x, float inverse_cell, uint32_t log2) {
+    const float cell = std::clamp(std::floor(x * inverse_cell), -1e9f, 1e9f);
     return static_cast<uint32_t>(static_cast<int32_t>(cell)) & ((1u << log2) - 1u);
   };
-  return ((coordinate(p.z, grid.log2_z) << grid.log2_y) | coordinate(p.y, grid.log2_y)) << grid.log2_x |
-         coordinate(p.x, grid.log2_x);
+  const uint32_t y = coordinate(p.y, grid.inverse_cell, grid.log2_y), z = coordinate(p.z, grid.inverse_cell, grid.log2_z);
+  return (z << grid.log2_y | y) << grid.log2_x | coordinate(p.x, grid.inverse_cell_x, grid.log2_x);
 }
 
 float automatic_radius(std::span<const glm::vec3> places, uint64_t count, double wanted) {
@@ -71,8 +71,9 @@ double progressive_area(uint64_t pass) {
   return std::exp(std::lgamma(i + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(i + 1.0));
 }
 
-kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, float radius) {
+kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_at_most, float radius, uint32_t along_x) {
   const float cell = radius * 1.001f;  // so that rounding never puts a neighbour two cells away
+  const auto log2_along_x = static_cast<uint32_t>(std::countr_zero(along_x));
   uint32_t size[3];
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> values;
@@ -81,12 +82,12 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
     // The outer twentieths may wrap around.
     const float extent = values.empty() ? 0.0f : values[values.size() * 19 / 20] - values[values.size() / 20];
     const double cells = std::min(static_cast<double>(extent) / cell, 4096.0);
-    const double least = axis == 0 ? 2.0 : 0.0;
-    size[axis] = static_cast<uint32_t>(std::max(least, std::ceil(std::log2(std::max(cells, 1.0)))));
+    size[axis] = static_cast<uint32_t>(std::ceil(std::log2(std::max(cells, 1.0))));
   }
-  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(count + 1) / 4.0)), 8u, 20u);
+  size[0] = std::max(size[0] + log2_along_x, LEAST_LOG2_BUCKET);
+  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(cells_at_most + 1))), 8u, 22u);
   // Spare cells go to the axes along which photons spread, so that places outside of the crowd rarely wrap into it.
-  const bool flat[3] = {size[0] <= 2, size[1] <= 1, size[2] <= 1};
+  const bool flat[3] = {size[0] <= LEAST_LOG2_BUCKET, size[1] <= 1, size[2] <= 1};
   while (size[0] + size[1] + size[2] < most && !(flat[0] && flat[1] && flat[2])) {
     int least = -1;
     for (int axis = 0; axis < 3; ++axis)
@@ -94,10 +95,10 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t count, 
     ++size[least];
   }
   while (size[0] + size[1] + size[2] > most) {
-    uint32_t& largest = *std::max_element(size, size + 3);
+    uint32_t& largest = size[0] > LEAST_LOG2_BUCKET ? *std::max_element(size, size + 3) : *std::max_element(size + 1, size + 3);
     --largest;
   }
-  return {1.0f / cell, size[0], size[1], size[2], 0};
+  return {static_cast<float>(along_x) / cell, 1.0f / cell, size[0], size[1], size[2], 0};
 }
 
 PhotonGrid::PhotonGrid(const KernelContext& context)
@@ -135,10 +136,11 @@ void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, con
   map_.radius = static_cast<float>(settings.progressive ? first_radius_ * std::sqrt(progressive_area(plan.pass)) : first_radius_);
   // A footprint is listed in each cell that it reaches into.
   if (context_.features.footprints) expected *= entries_of_footprint;
-  map_.grid = choose_grid(sample, expected, map_.radius);
+  map_.grid = context_.features.footprints ? choose_grid(sample, expected / 4, map_.radius, 1)
+                                           : choose_grid(sample, expected, map_.radius, CELLS_ALONG_X);
   const uint32_t cells = log2_cells(map_.grid);
   const uint32_t log2_buckets =
-      std::min({cells, most_log2_buckets, static_cast<uint32_t>(std::bit_width(expected / photons_per_bucket))});
+      std::min({cells - LEAST_LOG2_BUCKET, most_log2_buckets, static_cast<uint32_t>(std::bit_width(expected / photons_per_bucket))});
   map_.grid.bucket_shift = cells - log2_buckets;
   map_.count = 0;
   map_.low.fill(std::numeric_limits<float>::infinity());

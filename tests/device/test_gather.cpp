@@ -165,6 +165,28 @@ TEST_CASE("photons within a fixed radius are those of brute force") {
   }
 }
 
+TEST_CASE("photons far from the origin, where coordinates are coarse beside the radius") {
+  // Planes across each axis and aslant, so that rows of cells lie beside a place in every way.
+  Random random;
+  Gatherer& gatherer = shared_gatherer();
+  for (float radius : {0.05f, 0.01f, 0.002f}) {
+    CAPTURE(radius);
+    const vec3 middle(1000, -300, 500);
+    std::vector<cl_float8> photons;
+    std::vector<Query> queries;
+    for (const vec3 n : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), glm::normalize(vec3(1, 2, 3))}) {
+      const auto place = [&] {
+        const vec3 v = random.in_box(vec3(-8 * radius), vec3(8 * radius));
+        return middle + v - n * glm::dot(v, n);
+      };
+      for (int i = 0; i < 2000; ++i) photons.push_back(photon(place(), -n, random.in_box(vec3(0.1f), vec3(1))));
+      for (int i = 0; i < 200; ++i) queries.push_back({place(), n});
+    }
+    check(gatherer.irradiance(gatherer.grid(photons, radius), queries), queries,
+          [&](const Query& query) { return brute_within(query, photons, static_cast<double>(radius)); });
+  }
+}
+
 TEST_CASE("where all photons of a bucket count they need no test, and elsewhere they get one") {
   // A floor in buckets of .8 m along z: in one a third of the photons comes from below, in the next a single one does, in the
   // next none; then a third is above the floor, then a third is below it; the last is as it should be.
