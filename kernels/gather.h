@@ -1,5 +1,6 @@
 // The caustic's irradiance at places, from the photon map: from the photons within a fixed radius or those whose
-// footprints cover it (a grid), or from the k nearest (a tree). The SIMD is inside the ray: a batch of photons at a time.
+// footprints cover it (a grid), or from the k nearest (a tree). The SIMD is inside the ray: a batch of photons at a
+// time.
 #ifndef VITRUM_GATHER_H
 #define VITRUM_GATHER_H
 
@@ -87,8 +88,8 @@ typedef struct {
 #endif
 
 #if CAUSTICS == CAUSTICS_NEAREST || CAUSTICS == CAUSTICS_FOOTPRINTS  // place by place
-// Irradiance [W/m2] at places p on the side of unit normals n, in the lanes of `which`; adds the number of photons that it is
-// made of to *gathered, and of pairs of them, each twice, to *pairs.
+// Irradiance [W/m2] at places p on the side of unit normals n, in the lanes of `which`; adds the number of photons that
+// it is made of to *gathered, and of pairs of them, each twice, to *pairs.
 FUNCTION Vec3 gathered_irradiance(const PhotonMap* map, const Vec3 p, const Vec3 n, const Mask which, ulong* gathered,
                                   ulong* pairs) {
   Vec3 irradiance = make_vec3(0.0f, 0.0f, 0.0f);
@@ -102,7 +103,7 @@ FUNCTION Vec3 gathered_irradiance(const PhotonMap* map, const Vec3 p, const Vec3
 }
 #endif
 
-// A kernel lists `PHOTON_MAP_PARAMETERS` and starts with `const PhotonMap map = PHOTON_MAP;`. The host sets the arguments
-// in the same order (src/render/photon_pass.cpp).
+// A kernel lists `PHOTON_MAP_PARAMETERS` and starts with `const PhotonMap map = PHOTON_MAP;`. The host sets the
+// arguments in the same order (src/render/photon_pass.cpp).
 
 #endif

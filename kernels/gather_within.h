@@ -1,11 +1,12 @@
-// Photons within a fixed radius of places: which cells to look at, WIDTH places at a time; then, place by place, the photons in
-// them, a batch at a time. Included by gather.h.
+// Photons within a fixed radius of places: which cells to look at, WIDTH places at a time; then, place by place, the
+// photons in them, a batch at a time. Included by gather.h.
 #ifndef VITRUM_GATHER_WITHIN_H
 #define VITRUM_GATHER_WITHIN_H
 
 // Whether all photons of a bucket count for a surface, however far they are: the same sums, in the same order, of those
 // corners of its boxes where they are greatest, so that rounding does not matter.
-FUNCTION Mask all_on_surface(const PhotonMap* map, const Uint bucket, const Vec3 p, const Vec3 n, const float max_off_plane) {
+FUNCTION Mask all_on_surface(const PhotonMap* map, const Uint bucket, const Vec3 p, const Vec3 n,
+                             const float max_off_plane) {
   const Vec3 low = subtract3(FIELD3(map->buckets, low, bucket), p);
   const Vec3 high = subtract3(FIELD3(map->buckets, high, bucket), p);
   const Vec3 low_direction = FIELD3(map->buckets, low_direction, bucket);
@@ -37,8 +38,8 @@ typedef struct {
   PhotonRange ranges[WIDTH][MAX_PHOTON_RANGES];
 } Neighbourhoods;
 
-// How far it is [cells] to the row of cells that is `step` beside that of a place, which is at `coordinate` [cells], at least.
-// Of two rows in all, the other one is on both sides.
+// How far it is [cells] to the row of cells that is `step` beside that of a place, which is at `coordinate` [cells], at
+// least. Of two rows in all, the other one is on both sides.
 FUNCTION Float gap_to_row(const Float coordinate, const int step, const uint log2) {
   if (step == 0) return 0.0f;
   const Float above = coordinate - floor(coordinate);
@@ -46,8 +47,8 @@ FUNCTION Float gap_to_row(const Float coordinate, const int step, const uint log
   return larger(gap - 0x1p-22f * fabs(coordinate), (Float)0.0f);
 }
 
-FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, const float max_off_plane, const Mask which,
-                           Neighbourhoods* around) {
+FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, const float max_off_plane,
+                           const Mask which, Neighbourhoods* around) {
   const GridData grid = map->grid;
   const Uint iy = cell_coordinates(p.y, grid.inverse_cell);
   const Uint iz = cell_coordinates(p.z, grid.inverse_cell);
@@ -60,8 +61,8 @@ FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, con
   for (int dz = first_neighbour(grid.log2_z); dz <= last_neighbour(grid.log2_z); ++dz) {
     const Float gap_z = gap_to_row(p.z * grid.inverse_cell, dz, grid.log2_z);
     for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
-      // The cells of the row that the radius reaches, in one range unless the grid wraps or a bucket ends between them. A cell
-      // is wider than the radius by more than what is lost to rounding.
+      // The cells of the row that the radius reaches, in one range unless the grid wraps or a bucket ends between them.
+      // A cell is wider than the radius by more than what is lost to rounding.
       const Float gap_y = gap_to_row(p.y * grid.inverse_cell, dy, grid.log2_y);
       const Float reach2 = 1.0f - gap_y * gap_y - gap_z * gap_z;
       const Mask reaches = which & (reach2 > 0.0f);
@@ -101,7 +102,8 @@ FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, con
 }
 
 // [gather]
-// Adds photons of a range: Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the irradiance convolved with it.
+// Adds photons of a range: Epanechnikov's kernel 2 / (pi r^2) (1 - d^2 / r^2), unbiased for the irradiance convolved
+// with it.
 FUNCTION void add_photons(__global const float* bucket, uint first, uint last, float3 p, float3 n, float inverse_r2,
                           float max_off_plane, const int sure, Sums* sums) {
   for (uint i = first / BATCH * BATCH; i < last; i += BATCH) {
@@ -122,8 +124,8 @@ FUNCTION void add_photons(__global const float* bucket, uint first, uint last, f
 }
 // [/gather]
 
-// Irradiance [W/m2] at places p on the side of unit normals n, in the lanes of `which`; adds the number of photons that it is
-// made of to *gathered, and of pairs of them, each twice, to *pairs.
+// Irradiance [W/m2] at places p on the side of unit normals n, in the lanes of `which`; adds the number of photons that
+// it is made of to *gathered, and of pairs of them, each twice, to *pairs.
 FUNCTION Vec3 gathered_irradiance(const PhotonMap* map, const Vec3 p, const Vec3 n, const Mask which, ulong* gathered,
                                   ulong* pairs) {
   const float inverse_r2 = 1.0f / (map->radius * map->radius);

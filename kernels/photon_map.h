@@ -3,24 +3,24 @@
 // As they are stored, each run (stages/photons.cl) has a piece of a buffer of its own, field f of photon i of run r at
 // [photon_in_run(run_length, r, f) + i].
 //
-// The map is divided into buckets of 2^bucket_shift neighbouring cells, each with room of its own, in which it is sorted.
-// Until then its photons are rows of PHOTON_ROW floats; then they are in blocks of MAP_BLOCK, field by field in each, so
-// that neighbours are read at once and are near each other in memory: field f of photon i of the bucket is at
-// [MAP_BLOCK * start + map_place(i, f, fields)]. The last one fills up its block. Where a cell starts in its bucket
-// is at first_of_cell[cell + bucket], since each bucket has one more entry: where its last cell ends.
+// The map is divided into buckets of 2^bucket_shift neighbouring cells, each with room of its own, in which it is
+// sorted. Until then its photons are rows of PHOTON_ROW floats; then they are in blocks of MAP_BLOCK, field by field in
+// each, so that neighbours are read at once and are near each other in memory: field f of photon i of the bucket is at
+// [MAP_BLOCK * start + map_place(i, f, fields)]. The last one fills up its block. Where a cell starts in its bucket is
+// at first_of_cell[cell + bucket], since each bucket has one more entry: where its last cell ends.
 //
 // The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
-// far photons cost nothing but a failed test of distance. Cells are a radius wide along y and z, and half of it along x, where
-// neighbours follow each other in memory; there are at least 16 of these, all in one bucket. Of the 3 x 3 rows of cells around a
-// place each is visited once, also where the grid has fewer.
+// far photons cost nothing but a failed test of distance. Cells are a radius wide along y and z, and half of it along
+// x, where neighbours follow each other in memory; there are at least 16 of these, all in one bucket. Of the 3 x 3 rows
+// of cells around a place each is visited once, also where the grid has fewer.
 //
-// With footprints, cells are cubes, and a photon in the map has a kernel of its own, a tent over a parallelogram (footprint.h): rows and fields are
-// those of MAP_ROW and MAP_FIELDS then, and power is in W/m2. A large footprint is cut into several, and each is an entry of
-// all cells that it reaches into. What a run stores is where photons arrived.
+// With footprints, cells are cubes, and a photon in the map has a kernel of its own, a tent over a parallelogram
+// (footprint.h): rows and fields are those of MAP_ROW and MAP_FIELDS then, and power is in W/m2. A large footprint is
+// cut into several, and each is an entry of all cells that it reaches into. What a run stores is where photons arrived.
 //
-// For the k nearest, photons are in a tree instead, eight in a leaf and eight children at a node: field f of photon j of
-// leaf i at [(i * PHOTON_FIELDS + f) * 8 + j]. The tree is left-balanced (Jensen 2001, section 4.5.2), so that it needs
-// no pointers: the children of node i of a level are 8 i to 8 i + 7 of the level below, level 0 the leaves.
+// For the k nearest, photons are in a tree instead, eight in a leaf and eight children at a node: field f of photon j
+// of leaf i at [(i * PHOTON_FIELDS + f) * 8 + j]. The tree is left-balanced (Jensen 2001, section 4.5.2), so that it
+// needs no pointers: the children of node i of a level are 8 i to 8 i + 7 of the level below, level 0 the leaves.
 #ifndef VITRUM_PHOTON_MAP_H
 #define VITRUM_PHOTON_MAP_H
 
@@ -76,9 +76,9 @@
 #endif
 #endif
 
-// Footprints that are large are listed by larger cells, level by level, so that few cells list each. All levels share the grid,
-// the cells of a place a quarter of it away from those of the level below, where there is less of a crowd; an entry's flags
-// tell which level it is of, and the entry of the cell about its own middle from its others.
+// Footprints that are large are listed by larger cells, level by level, so that few cells list each. All levels share
+// the grid, the cells of a place a quarter of it away from those of the level below, where there is less of a crowd; an
+// entry's flags tell which level it is of, and the entry of the cell about its own middle from its others.
 #define LEVELS 4u
 #define LEVEL_RATIO 4.0f
 FUNCTION float level_scale(uint level) { return (float)(1u << 2u * level); }
@@ -97,25 +97,25 @@ typedef struct {
 // Floats of a sorted bucket.
 FUNCTION uint map_floats(uint photons, uint fields) { return (photons + MAP_BLOCK - 1u) / MAP_BLOCK * MAP_BLOCK * fields; }
 
-// A run may store two photons for each that it shoots, since one may branch off; on a lattice, where up to five do at one in
-// sixteen, but at every fourth of a column, it is three. And there is room for a packet beyond, so that packets may be
-// written whole.
+// A run may store two photons for each that it shoots, since one may branch off; on a lattice, where up to five do at
+// one in sixteen, but at every fourth of a column, it is three. And there is room for a packet beyond, so that packets
+// may be written whole.
 FUNCTION uint photons_stride(uint run_length) { return 3u * run_length + 16u; }
 // `row`: PHOTON_ROW, or ARRIVED_ROW where patches are drawn.
 FUNCTION ulong photon_in_run(uint run_length, uint run, uint field, uint row) {
   return ((ulong)run * row + field) * photons_stride(run_length);
 }
 
-// A lattice of emission: its points are at (column + shift_u) / columns, (row + shift_v) / rows of the unit square, numbered
-// column by column; the number of rows is a power of two.
+// A lattice of emission: its points are at (column + shift_u) / columns, (row + shift_v) / rows of the unit square,
+// numbered column by column; the number of rows is a power of two.
 typedef struct {
   uint columns;                // 0: there is no lattice
   uint log2_rows;              // at least BRANCH_LOG2
   float shift_u, shift_v;      // in [0, 1)
 } LatticeData;
 
-// Of every fourth row and column, two lattices of what branches off the photons there, numbered in the same way one after the
-// other behind the whole lattice.
+// Of every fourth row and column, two lattices of what branches off the photons there, numbered in the same way one
+// after the other behind the whole lattice.
 #define BRANCH_LOG2 2u
 #define BRANCH_STEP 4.0f
 FUNCTION uint lattice_points(LatticeData lattice) { return lattice.columns << lattice.log2_rows; }
@@ -131,8 +131,8 @@ typedef struct {
   float largest;               // sides beyond that are cut [m]
 } FootprintLimits;
 
-// Cell size [m] as its inverse, along x and along y and z; log2 of the number of cells along each axis, and of those in a
-// bucket.
+// Cell size [m] as its inverse, along x and along y and z; log2 of the number of cells along each axis, and of those in
+// a bucket.
 #define CELLS_ALONG_X 2        // to one along y or z; not with footprints
 #define LEAST_LOG2_BUCKET 4u   // so that the cells of a row that are looked at lie in three buckets at most
 typedef struct {

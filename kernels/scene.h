@@ -28,7 +28,7 @@ typedef struct {
   __global const float* positions;
   __global const float* normals;
   __global const float* texcoords;
-  __global const uint* normal_corners;       // of meshes that have normals, three a triangle; NO_INDEX in the first: flat
+  __global const uint* normal_corners;       // of meshes that have normals, 3 a triangle; NO_INDEX in the first: flat
   __global const uint* texcoord_corners;     // of those that have texture coordinates; NO_INDEX in the first: none
   __global const LightFace* faces;
 #endif

@@ -15,7 +15,9 @@ FUNCTION void set_mesh_surfaces(const Scene scene, const HitPacket* hits, const 
   const Float v = hits->v;
   const Float w = 1.0f - u - v;
   // Near its plane however far the ray has come.
-  const Vec3 position = along3(along3(corners.a, u, subtract3(corners.b, corners.a)), v, subtract3(corners.c, corners.a));
+  const Vec3 to_b = subtract3(corners.b, corners.a);
+  const Vec3 to_c = subtract3(corners.c, corners.a);
+  const Vec3 position = along3(along3(corners.a, u, to_b), v, to_c);
   const Vec3 geometric = normal_of(&corners);
   const Uint body = which ? hits->shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
   Vec3 shading = geometric;
@@ -65,8 +67,8 @@ FUNCTION void set_mesh_surfaces(const Scene scene, const HitPacket* hits, const 
 
 #if HAS_CONTACTS
 
-// How far off each other [m] two surfaces may be found that a ray from `origin` meets at one place, which is within `error`
-// of the first: by what the triangle test makes of the way from there (tree.h).
+// How far off each other [m] two surfaces may be found that a ray from `origin` meets at one place, which is within
+// `error` of the first: by what the triangle test makes of the way from there (tree.h).
 FUNCTION Float contact_error(const Float error, const Vec3 origin) {
   return error + SURFACE_ROUNDING * largest3(origin);
 }
@@ -79,8 +81,8 @@ FUNCTION Mask hidden_by_exact(const Scene scene, const RayPacket* rays, const Hi
   return met & exact_is_opaque & (gap <= contact_error(triangle_error(&corners), rays->origin));
 }
 
-// What lies within the rounding of the transparent surface in `lane` belongs to the same event: notes the further borders,
-// or is true and has put an opaque surface in the place of its hit.
+// What lies within the rounding of the transparent surface in `lane` belongs to the same event: notes the further
+// borders, or is true and has put an opaque surface in the place of its hit.
 FUNCTION int find_contacts(const Scene scene, const RayPacket* rays, const uint lane, const float error,
                            SurfacePacket* surface, HitPacket* hits) {
   const float cosine = fabs(lane_dot3(LANE3(rays->direction, lane), LANE3(surface->geometric_normal, lane)));
@@ -109,17 +111,17 @@ FUNCTION int find_contacts(const Scene scene, const RayPacket* rays, const uint 
 
 #if HAS_DIELECTRIC
 
-// A ray that has gone into a closed mesh meets its back next, one that has gone out of it its front or nothing. Rounding
-// near edges can make it otherwise, in one of two ways.
+// A ray that has gone into a closed mesh meets its back next, one that has gone out of it its front or nothing.
+// Rounding near edges can make it otherwise, in one of two ways.
 FUNCTION Mask are_astray(const MeshRays* rays, const HitPacket* hits) {
   const Mask meets_wrong_side = (hits->shape == rays->shape) & (hits->front != rays->front);
   return hits->t < INFINITY ? meets_wrong_side : rays->front == 0;
 }
 
-// One: rounding has put the start below the plane of the very triangle that the ray leaves, or back along a ray that grazes
-// it, by as much as the ray takes to rise from the plane. There it may still be beyond an edge, and meet a neighbour from
-// the side that it came from, or the one again that it met before. It has crossed this surface already. Of the lanes of
-// `which`, whose rays leave a triangle.
+// One: rounding has put the start below the plane of the very triangle that the ray leaves, or back along a ray that
+// grazes it, by as much as the ray takes to rise from the plane. There it may still be beyond an edge, and meet a
+// neighbour from the side that it came from, or the one again that it met before. It has crossed this surface already.
+// Of the lanes of `which`, whose rays leave a triangle.
 FUNCTION Mask have_crossed_already(const Scene scene, const MeshRays* rays, const HitPacket* hits, const Mask which) {
   const Mask in_question =
       which & (hits->t < INFINITY) & (hits->shape == rays->shape) & ((hits->front | rays->front) != 0);
@@ -128,8 +130,8 @@ FUNCTION Mask have_crossed_already(const Scene scene, const MeshRays* rays, cons
   return in_question & (hits->t * fabs(dot3(rays->rays.direction, normal_of(&corners))) <= rays->error);
 }
 
-// The other: a ray that grazes an edge has slipped past it. It went in, but from where rounding has put it the mesh lies
-// behind, or the reverse. Then the stack of media is mended: the ray is on the other side.
+// The other: a ray that grazes an edge has slipped past it. It went in, but from where rounding has put it the mesh
+// lies behind, or the reverse. Then the stack of media is mended: the ray is on the other side.
 FUNCTION void mend_media(const Scene scene, const MeshRays* rays, const Mask astray, Uint* media) {
   FOR_LANES(lane, astray) {
     const uint medium = scene.materials[body_of(scene, LANE(rays->shape, uint, lane))->material].medium;

@@ -1,12 +1,12 @@
-// Traversal of the tree over triangles: SIMD inside the ray, 8 boxes or 4 triangles at a time, and WIDTH rays in turns, so
-// that each one's next node is on its way from memory while the others go on.
+// Traversal of the tree over triangles: SIMD inside the ray, 8 boxes or 4 triangles at a time, and WIDTH rays in turns,
+// so that each one's next node is on its way from memory while the others go on.
 //
 // What a ray hits is decided by the triangle test alone: it is watertight (Woop, Benthin and Wald, Watertight
-// Ray/Triangle Intersection, JCGT 2013), two-sided, and edges and corners belong to the triangle. The boxes are only there
-// to be fast. Their padding covers every rounding of both tests, so the result does not hang on the tree:
-// with u = 2^-24 and m = the largest coordinate of a box's corners as seen from the ray's origin, the sheared corners of
-// a triangle are off by 9 u m, its t by 21 u m / |d_z|, the planes' t by 8 u m / |d| (division 2.5 ulp, as OpenCL grants);
-// m is at most the sum of the largest coordinates of box and origin, and TREE_PADDING is 64 u of each.
+// Ray/Triangle Intersection, JCGT 2013), two-sided, and edges and corners belong to the triangle. The boxes are only
+// there to be fast. Their padding covers every rounding of both tests, so the result does not hang on the tree:
+// with u = 2^-24 and m = the largest coordinate of a box's corners as seen from the ray's origin, the sheared corners
+// of a triangle are off by 9 u m, its t by 21 u m / |d_z|, the planes' t by 8 u m / |d| (division 2.5 ulp, as OpenCL
+// grants); m is at most the sum of the largest coordinates of box and origin, and TREE_PADDING is 64 u of each.
 #ifndef VITRUM_TREE_H
 #define VITRUM_TREE_H
 
@@ -19,8 +19,8 @@
 typedef struct {
   Uint near_x, near_y, near_z;         // which plane of each axis a ray meets first, as an index into TreeNode::planes
   Vec3 inverse;
-  Vec3 enter, leave;                   // t of a plane at p is p * inverse - enter, early, or p * inverse - leave, late by
-                                       // the padding of the origin
+  Vec3 enter, leave;                   // t of a plane at p is p * inverse - enter, early, or p * inverse - leave, late,
+                                       // by the padding of the origin
   Uint kx, ky, kz;                     // axes, as indices into TreeLeaf::corners; the direction is longest along kz
   Vec3 origin;                         // along kx, ky, kz
   Float shear_x, shear_y, inverse_kz;
@@ -90,10 +90,10 @@ static float4 tree_cross(const float4 a, const float4 b, const float4 c, const f
   return fma(a, b, -cd) + fma(-c, d, cd);
 }
 
-// Which triangles of a leaf the line of ray i meets, at which t, with the weights of corners b and c, and whether it meets
-// their fronts; meaningless elsewhere.
-static int4 tree_triangles(const TreeRays* r, const uint i, __global const TreeLeaf* leaf, float4* t, float4* u, float4* v,
-                           int4* front) {
+// Which triangles of a leaf the line of ray i meets, at which t, with the weights of corners b and c, and whether it
+// meets their fronts; meaningless elsewhere.
+static int4 tree_triangles(const TreeRays* r, const uint i, __global const TreeLeaf* leaf, float4* t, float4* u,
+                           float4* v, int4* front) {
   __global const float* a = &leaf->corners[0][0][0];
   __global const float* b = &leaf->corners[1][0][0];
   __global const float* c = &leaf->corners[2][0][0];
@@ -176,7 +176,9 @@ static void tree_pop(TreeWalks* walks, const uint i, uint waiting, __global cons
   SET_LANE(walks->waiting, uint, i, waiting);
 }
 
-static uint8 tree_exchanged(const uint8 a, const uint8 b, const int8 greater) { return greater ? max(a, b) : min(a, b); }
+static uint8 tree_exchanged(const uint8 a, const uint8 b, const int8 greater) {
+  return greater ? max(a, b) : min(a, b);
+}
 
 // In descending order: a network of Batcher's (1968), which guesses no branches.
 static uint8 tree_sorted(uint8 a) {
@@ -201,7 +203,8 @@ static uint8 tree_chosen(const uint8 values, const uint8 lanes) {
 
 // Ray i goes on from a node to the closest of its children whose boxes it meets; the others wait. On each level at most
 // TREE_WIDTH - 1 do so, and writing all TREE_WIDTH above them stays within the stack.
-static void tree_descend(TreeWalks* walks, const uint i, __global const TreeNode* nodes, __global const TreeLeaf* leaves) {
+static void tree_descend(TreeWalks* walks, const uint i, __global const TreeNode* nodes,
+                         __global const TreeLeaf* leaves) {
   __global const TreeNode* node = nodes + LANE(walks->child, uint, i);
   __global const float* planes = &node->planes[0][0][0];
   const TreeRays* r = &walks->rays;
@@ -254,9 +257,9 @@ static bool tree_near_plane(const float3 p, const float3 a, const float3 b, cons
 }
 
 // Does the triangle belong to the surface that ray i leaves, so that it is not met? The one that it leaves does. Of the
-// same body, those do which it starts from within rounding and would see from the wrong side: a ray that has gone inside
-// does not enter again through the next facet. Of others, where shapes touch, all that it starts from: they have been
-// crossed together with the one it leaves (contacts.h).
+// same body, those do which it starts from within rounding and would see from the wrong side: a ray that has gone
+// inside does not enter again through the next facet. Of others, where shapes touch, all that it starts from: they have
+// been crossed together with the one it leaves (contacts.h).
 static bool tree_left_behind(const MeshRays* rays, const uint i, __global const TreeLeaf* leaf, const uint lane,
                              const uint front) {
   if (leaf->shape[lane] == LANE(rays->shape, uint, i)) {
@@ -311,8 +314,8 @@ static void tree_descend_each(TreePlaces* places, TreeWalks* walks, __global con
   }
 }
 
-// Replaces hits by the first triangle in (t_min, t_max) if that comes before them, for each lane whose bit in `which` is
-// set. The bits of those that it replaced.
+// Replaces hits by the first triangle in (t_min, t_max) if that comes before them, for each lane whose bit in `which`
+// is set. The bits of those that it replaced.
 static uint tree_closest(const MeshRays* rays, const uint which, __global const TreeNode* nodes,
                          __global const TreeLeaf* leaves, HitPacket* hits) {
   TreeWalks walks;
@@ -376,9 +379,9 @@ static uint tree_any(const MeshRays* rays, const uint which, __global const Tree
 #define TREE_MAX_BORDERS 4
 
 // The first TREE_MAX_BORDERS borders at t_first <= t <= t_last, t_first >= 0, of triangles whose planes are within
-// `error` [m] of `place`, in order, for one of the rays; returns how many there are in `hits`. The triangles of a shape that
-// are met from one side are one border, since at an edge or a corner a ray meets several: the first of them counts. For
-// surfaces in contact; the rays' own t_min and t_max and what they leave do not matter.
+// `error` [m] of `place`, in order, for one of the rays; returns how many there are in `hits`. The triangles of a shape
+// that are met from one side are one border, since at an edge or a corner a ray meets several: the first of them
+// counts. For surfaces in contact; the rays' own t_min and t_max and what they leave do not matter.
 static uint tree_borders_within(const RayPacket* rays, const uint i, __global const TreeNode* nodes,
                                 __global const TreeLeaf* leaves, const float t_first, const float t_last,
                                 const float3 place, const float error, Hit hits[TREE_MAX_BORDERS]) {

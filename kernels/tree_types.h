@@ -9,8 +9,8 @@
 #define TREE_LEAF_BIT 0x80000000u   // set in a child reference: a leaf; the other bits are its index
 #define TREE_EMPTY 0xffffffffu      // no child, and shape and primitive of no triangle
 
-// Nodes on a path from the root, the root included. The builder keeps to it, so the traversal's stack has a proven size:
-// on each level at most TREE_WIDTH - 1 siblings wait, on the last one all children do.
+// Nodes on a path from the root, the root included. The builder keeps to it, so the traversal's stack has a proven
+// size: on each level at most TREE_WIDTH - 1 siblings wait, on the last one all children do.
 #define TREE_MAX_DEPTH 24
 #define TREE_STACK_SIZE (TREE_MAX_DEPTH * (TREE_WIDTH - 1) + 1)
 
@@ -18,7 +18,8 @@
 // tree.h says why this is enough for the traversal to find whatever the triangle test would hit.
 #define TREE_PADDING 0x1p-18f
 
-// Triangles that a ray can name (FROM_TRIANGLE in surface.h), of which a gather of four words each has indices below 2^31.
+// Triangles that a ray can name (FROM_TRIANGLE in surface.h), of which a gather of four words each has indices below
+// 2^31.
 #define TREE_MAX_TRIANGLES 0x1fffffffu
 
 // Coordinates up to here [m] neither overflow nor underflow in the triangle test.

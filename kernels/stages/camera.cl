@@ -143,7 +143,8 @@ BODY trace_pixels(const Scene scene, const PhotonMap map, const PatchView view, 
       }
 #endif
       if (ANY(gathers)) {
-        const Vec3 found = gathered_irradiance(&map, surface.position, shading.scattering.normal, gathers, &gathered, &pairs);
+        const Vec3 found = gathered_irradiance(&map, surface.position, shading.scattering.normal, gathers, &gathered,
+                                               &pairs);
         irradiance = select3(gathers, found, irradiance);
       }
       const Vec3 caustic = scale3(0.318309886183790672f, multiply3(shading.scattering.diffuse, irradiance));

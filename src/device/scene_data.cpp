@@ -151,8 +151,8 @@ class Builder {
     }
   }
 
-  /// Adds what the triangles of a mesh, of which the first is `first_triangle`, have at their corners, from `first_value` on.
-  /// Returns BodyData::normals or BodyData::texcoords.
+  /// Adds what the triangles of a mesh, of which the first is `first_triangle`, have at their corners, from
+  /// `first_value` on. Returns BodyData::normals or BodyData::texcoords.
   static uint32_t add_corners(const std::vector<glm::uvec3>& indices, uint32_t first_triangle, uint32_t first_value,
                               std::vector<uint32_t>& corners) {
     if (indices.empty()) return NO_INDEX;

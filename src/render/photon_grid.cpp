@@ -32,7 +32,8 @@ uint32_t cell_of(const kernel::GridData& grid, const glm::vec3& p) {
     const float cell = std::clamp(std::floor(x * inverse_cell), -1e9f, 1e9f);
     return static_cast<uint32_t>(static_cast<int32_t>(cell)) & ((1u << log2) - 1u);
   };
-  const uint32_t y = coordinate(p.y, grid.inverse_cell, grid.log2_y), z = coordinate(p.z, grid.inverse_cell, grid.log2_z);
+  const uint32_t y = coordinate(p.y, grid.inverse_cell, grid.log2_y);
+  const uint32_t z = coordinate(p.z, grid.inverse_cell, grid.log2_z);
   return (z << grid.log2_y | y) << grid.log2_x | coordinate(p.x, grid.inverse_cell_x, grid.log2_x);
 }
 
@@ -71,7 +72,8 @@ double progressive_area(uint64_t pass) {
   return std::exp(std::lgamma(i + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(i + 1.0));
 }
 
-kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_at_most, float radius, uint32_t along_x) {
+kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_at_most, float radius,
+                             uint32_t along_x) {
   const float cell = radius * 1.001f;  // so that rounding never puts a neighbour two cells away
   const auto log2_along_x = static_cast<uint32_t>(std::countr_zero(along_x));
   uint32_t size[3];
@@ -95,8 +97,8 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_a
     ++size[least];
   }
   while (size[0] + size[1] + size[2] > most) {
-    uint32_t& largest = size[0] > LEAST_LOG2_BUCKET ? *std::max_element(size, size + 3) : *std::max_element(size + 1, size + 3);
-    --largest;
+    const int first = size[0] > LEAST_LOG2_BUCKET ? 0 : 1;
+    --*std::max_element(size + first, size + 3);
   }
   return {static_cast<float>(along_x) / cell, 1.0f / cell, size[0], size[1], size[2], 0};
 }
@@ -139,8 +141,8 @@ void PhotonGrid::start(std::span<const glm::vec3> sample, uint64_t expected, con
   map_.grid = context_.features.footprints ? choose_grid(sample, expected / 4, map_.radius, 1)
                                            : choose_grid(sample, expected, map_.radius, CELLS_ALONG_X);
   const uint32_t cells = log2_cells(map_.grid);
-  const uint32_t log2_buckets =
-      std::min({cells - LEAST_LOG2_BUCKET, most_log2_buckets, static_cast<uint32_t>(std::bit_width(expected / photons_per_bucket))});
+  const auto wanted_log2 = static_cast<uint32_t>(std::bit_width(expected / photons_per_bucket));
+  const uint32_t log2_buckets = std::min({wanted_log2, most_log2_buckets, cells - LEAST_LOG2_BUCKET});
   map_.grid.bucket_shift = cells - log2_buckets;
   map_.count = 0;
   map_.low.fill(std::numeric_limits<float>::infinity());

@@ -7,22 +7,22 @@
 
 namespace vitrum {
 
-/// The radius within which about `wanted` of `count` photons lie around the median photon, judged from `places`, those of
-/// some photons [m]. The density is that on a surface.
+/// The radius within which about `wanted` of `count` photons lie around the median photon, judged from `places`, those
+/// of some photons [m]. The density is that on a surface.
 float automatic_radius(std::span<const glm::vec3> places, uint64_t count, double wanted);
 
-/// What a progressive radius has become by pass number `pass`, from 0, as a multiple of its square in pass 0:
-/// r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) for passes i = 1, 2, ... with alpha = 2/3, for which the mean squared error
-/// of the mean over N passes falls fastest, as N^(-2/3). Knaus and Zwicker, "Progressive photon mapping: a probabilistic
+/// What a progressive radius has become by pass number `pass`, from 0, as a multiple of its square in pass 0: r_(i+1)^2
+/// / r_i^2 = (i + alpha) / (i + 1) for passes i = 1, 2, ... with alpha = 2/3, for which the mean squared error of the
+/// mean over N passes falls fastest, as N^(-2/3). Knaus and Zwicker, "Progressive photon mapping: a probabilistic
 /// approach", ACM Transactions on Graphics 30 (2011).
 double progressive_area(uint64_t pass);
 
-/// A grid of cells a little larger than `radius` [m], 1 / `along_x` of that along x (a power of two), as many as the photons
-/// in `sample` are spread over, but not more than `cells_at_most` where that is 256 to 2^22.
+/// A grid of cells a little larger than `radius` [m], 1 / `along_x` of that along x (a power of two), as many as the
+/// photons in `sample` are spread over, but not more than `cells_at_most` where that is 256 to 2^22.
 kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_at_most, float radius, uint32_t along_x);
 
-/// Photons to look at, of a pass of `count`, before its grid is started: enough for each bucket to tell its room, so that
-/// this stays within `largest_row_share` rows a photon.
+/// Photons to look at, of a pass of `count`, before its grid is started: enough for each bucket to tell its room, so
+/// that this stays within `largest_row_share` rows a photon.
 uint32_t pilot_size(uint64_t count);
 inline constexpr double largest_row_share = 1.5;
 

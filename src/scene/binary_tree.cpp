@@ -26,7 +26,8 @@ void set_bounds(void* node, const RTCBounds** bounds, unsigned int count, void*)
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*) {
   assert(count <= TREE_LEAF_WIDTH);
-  auto* node = static_cast<BinaryNode*>(rtcThreadLocalAlloc(allocator, offsetof(BinaryNode, child), alignof(BinaryNode)));
+  auto* node =
+      static_cast<BinaryNode*>(rtcThreadLocalAlloc(allocator, offsetof(BinaryNode, child), alignof(BinaryNode)));
   node->triangles = static_cast<uint32_t>(count);
   for (size_t i = 0; i < count; ++i) node->leaf.triangle[i] = primitives[i].primID;
   return node;

@@ -36,8 +36,9 @@ constexpr int binary_max_height = 3 * TREE_MAX_DEPTH;
 
 class BinaryTree {
  public:
-  /// Builds it with `threads` threads, 0: all, leaves of up to TREE_LEAF_WIDTH of the boxes. The same boxes give the same
-  /// tree whatever the number of threads. Throws Error where Embree cannot, and std::bad_alloc where memory runs out.
+  /// Builds it with `threads` threads, 0: all, leaves of up to TREE_LEAF_WIDTH of the boxes. The same boxes give the
+  /// same tree whatever the number of threads. Throws Error where Embree cannot, and std::bad_alloc where memory runs
+  /// out.
   BinaryTree(std::vector<RTCBuildPrimitive> boxes, unsigned threads);
 
   /// nullptr: no boxes.

@@ -102,7 +102,8 @@ class Flattener {
     tree_.nodes.push_back(empty_node());
     for (int i = 0; i < count; ++i) {
       const BinaryNode& child = *children[i].node;
-      set_child(index, i, children[i].bounds, child.is_leaf() ? leaf(child) : node(child, depth + 1, waiting + count - 1));
+      const uint32_t reference = child.is_leaf() ? leaf(child) : node(child, depth + 1, waiting + count - 1);
+      set_child(index, i, children[i].bounds, reference);
     }
     return index;
   }

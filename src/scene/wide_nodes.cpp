@@ -26,8 +26,8 @@ float cost_of(const BinaryNode& node, float area, int count) {
 
 /// By dynamic programming from the leaves upwards (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs
 /// Through Compressed Wide BVHs, 2017): cost[i - 1] is the least cost of the node as up to i children of a wide one, of
-/// which to_first[i - 1] are its first child's; 0: i - 1 children are no dearer. A node that is one child is the root of a
-/// wide node itself, for which cost[TREE_WIDTH - 1] and to_first[TREE_WIDTH - 1] stand.
+/// which to_first[i - 1] are its first child's; 0: i - 1 children are no dearer. A node that is one child is the root
+/// of a wide node itself, for which cost[TREE_WIDTH - 1] and to_first[TREE_WIDTH - 1] stand.
 void weigh(BinaryNode& node, float area) {
   float areas[2];
   for (int k = 0; k < 2; ++k) {
@@ -71,8 +71,8 @@ void open(const BinaryNode& node, int count, std::vector<WideChild>& children) {
   add({node.child[1], node.bounds[1]}, count - first, children);
 }
 
-/// The tallest nodes are opened first. Of the height of `node` and one and two less there are at most seven, so that all
-/// of them are.
+/// The tallest nodes are opened first. Of the height of `node` and one and two less there are at most seven, so that
+/// all of them are.
 std::vector<WideChild> flattest(const BinaryNode& node) {
   std::vector<WideChild> children{{node.child[0], node.bounds[0]}, {node.child[1], node.bounds[1]}};
   while (children.size() < TREE_WIDTH) {
