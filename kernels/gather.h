@@ -1,6 +1,6 @@
 // The caustic's irradiance at places, from the photon map: from the photons within a fixed radius or those whose
-// footprints cover it (a grid), or from the k nearest (a tree). The SIMD is inside the ray: a batch of photons at a
-// time.
+// footprints cover it (a grid), or from the k nearest (a tree). Photons are looked at place by place, a batch of them
+// at a time.
 #ifndef VITRUM_GATHER_H
 #define VITRUM_GATHER_H
 

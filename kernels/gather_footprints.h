@@ -14,7 +14,7 @@ FUNCTION void add_cell(const PhotonMap* map, float3 p, float3 n, uint level, Sum
   const uint bucket = cell >> grid.bucket_shift;
   const uint first = map->first_of_cell[bucket + cell];
   const uint last = map->first_of_cell[bucket + cell + 1];
-  __global const float* entries_of_bucket = photons_of_bucket(map, bucket);
+  __global const float* entries_of_bucket = map->photons + (ulong)map->buckets[bucket].start * MAP_BLOCK;
   for (uint i = first / BATCH * BATCH; i < last; i += BATCH) {
     __global const float* entries = entries_of_bucket + map_place(i, 0, MAP_FIELDS);
     const BatchFloat dx = load_batch(entries + PHOTON_X * MAP_BLOCK) - p.x;

@@ -23,10 +23,6 @@ FUNCTION Mask within_reach(const PhotonMap* map, const Vec3 p) {
          (p.x <= map->high.x + map->radius) & (p.y <= map->high.y + map->radius) & (p.z <= map->high.z + map->radius);
 }
 
-FUNCTION __global const float* photons_of_bucket(const PhotonMap* map, uint bucket) {
-  return map->photons + (ulong)map->buckets[bucket].start * MAP_BLOCK;
-}
-
 // Adds a batch of photons, those that count, each by its weight.
 FUNCTION void add_weighted(__global const float* photons, const BatchInt counts, const BatchFloat weight, Sums* sums) {
   sums->minus_count += counts;

@@ -28,8 +28,8 @@ typedef struct {
   uint start, first, last;
   uint sure;                   // all of them count for the surface, if only they are near
 } PhotonRange;
-// Nine rows of cells, each in three buckets at worst.
-#define MAX_PHOTON_RANGES 27
+// Nine rows of cells, each in two ranges at worst.
+#define MAX_PHOTON_RANGES 18
 #define MAX_CELLS_OF_ROW (1u << LEAST_LOG2_BUCKET)
 
 // The photons in the cells around places, as ranges, and how many these are.
@@ -53,8 +53,6 @@ FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, con
   const Uint iy = cell_coordinates(p.y, grid.inverse_cell);
   const Uint iz = cell_coordinates(p.z, grid.inverse_cell);
   const uint size_x = 1u << grid.log2_x;
-  // Rounding: of x here and of the photons'. Beyond, places are hardly told apart.
-  const Float off_x = smaller(0x1p-22f * fabs(p.x * grid.inverse_cell_x), (Float)3.0f) / grid.inverse_cell_x;
   Uint asked = (Uint)0xffffffffu;  // the buckets that `sure` is of
   Mask sure = 0;
   for (uint lane = 0; lane < WIDTH; ++lane) around->count[lane] = 0;
@@ -62,15 +60,15 @@ FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, con
     const Float gap_z = gap_to_row(p.z * grid.inverse_cell, dz, grid.log2_z);
     for (int dy = first_neighbour(grid.log2_y); dy <= last_neighbour(grid.log2_y); ++dy) {
       // The cells of the row that the radius reaches, in one range unless the grid wraps or a bucket ends between them.
-      // A cell is wider than the radius by more than what is lost to rounding.
+      // Rounding keeps the order of places, and cells are a thousandth wider than the radius.
       const Float gap_y = gap_to_row(p.y * grid.inverse_cell, dy, grid.log2_y);
       const Float reach2 = 1.0f - gap_y * gap_y - gap_z * gap_z;
       const Mask reaches = which & (reach2 > 0.0f);
       if (!ANY(reaches)) continue;
-      const Float reach = sqrt(larger(reach2, (Float)0.0f)) / grid.inverse_cell + off_x;
+      const Float reach = sqrt(larger(reach2, (Float)0.0f)) / grid.inverse_cell;
       const Uint x_first = cell_coordinates(p.x - reach, grid.inverse_cell_x);
       const Uint x_last = cell_coordinates(p.x + reach, grid.inverse_cell_x);
-      const Uint row = rows_of_cells(grid, iy + (uint)dy, iz + (uint)dz);
+      const Uint row = ROW_OF_CELLS(grid, iy + (uint)dy, iz + (uint)dz);
       const Uint row_end = row + size_x;
       Uint cell = row + (x_first & (size_x - 1u));
       Uint left = min(x_last - x_first + 1u, min(size_x, MAX_CELLS_OF_ROW));
@@ -83,8 +81,10 @@ FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, con
         const Uint last = GATHER(Uint, map->first_of_cell, bucket + end);
         const Mask filled = (left > 0u) & (first < last);
         if (ANY(filled)) {
-          if (ANY(filled & (bucket != asked))) sure = all_on_surface(map, bucket, p, n, max_off_plane);
-          asked = bucket;
+          if (ANY(filled & (bucket != asked))) {
+            sure = all_on_surface(map, bucket, p, n, max_off_plane);
+            asked = bucket;
+          }
           const Uint start = FIELD(Uint, uint, map->buckets, start, bucket);
           FOR_LANES(lane, filled) {
             PhotonRange* range = &around->ranges[lane][around->count[lane]++];

@@ -11,8 +11,8 @@
 //
 // The grid wraps around: cell (ix, iy, iz) modulo its size, a power of two along each axis. So it needs no bounds, and
 // far photons cost nothing but a failed test of distance. Cells are a radius wide along y and z, and half of it along
-// x, where neighbours follow each other in memory; there are at least 16 of these, all in one bucket. Of the 3 x 3 rows
-// of cells around a place each is visited once, also where the grid has fewer.
+// x, where neighbours follow each other in memory; a row has at least 16 of them, and so has a bucket. Of the 3 x 3
+// rows of cells around a place each is visited once, also where the grid has fewer.
 //
 // With footprints, cells are cubes, and a photon in the map has a kernel of its own, a tent over a parallelogram
 // (footprint.h): rows and fields are those of MAP_ROW and MAP_FIELDS then, and power is in W/m2. A large footprint is
@@ -134,7 +134,7 @@ typedef struct {
 // Cell size [m] as its inverse, along x and along y and z; log2 of the number of cells along each axis, and of those in
 // a bucket.
 #define CELLS_ALONG_X 2        // to one along y or z; not with footprints
-#define LEAST_LOG2_BUCKET 4u   // so that the cells of a row that are looked at lie in three buckets at most
+#define LEAST_LOG2_BUCKET 4u   // of a row too: the cells of one that are looked at are in two ranges at most
 typedef struct {
   float inverse_cell_x, inverse_cell;
   uint log2_x, log2_y, log2_z;
@@ -173,24 +173,23 @@ FUNCTION Uint cell_coordinates(Float x, float inverse_cell) {
   return AS_UINT(TO_INT(cell > 1e9f ? 1e9f : cell < -1e9f ? -1e9f : cell));
 }
 
-FUNCTION uint row_of_cells(const GridData grid, int iy, int iz) {
-  const uint y = (uint)iy & ((1u << grid.log2_y) - 1u);
-  const uint z = (uint)iz & ((1u << grid.log2_z) - 1u);
-  return ((z << grid.log2_y) | y) << grid.log2_x;
-}
+// The first cell of a row; coordinates are uints of any width.
+#define ROW_OF_CELLS(grid, iy, iz)                                                                   \
+  (((((iz) & ((1u << (grid).log2_z) - 1u)) << (grid).log2_y) | ((iy) & ((1u << (grid).log2_y) - 1u))) \
+   << (grid).log2_x)
+
 FUNCTION uint cell_of_level(const GridData grid, uint level, int ix, int iy, int iz) {
   const uint x = ((uint)ix + (level << grid.log2_x >> 2)) & ((1u << grid.log2_x) - 1u);
-  return row_of_cells(grid, iy + (int)(level << grid.log2_y >> 2), iz + (int)(level << grid.log2_z >> 2)) | x;
+  const uint y = (uint)iy + (level << grid.log2_y >> 2);
+  const uint z = (uint)iz + (level << grid.log2_z >> 2);
+  return ROW_OF_CELLS(grid, y, z) | x;
 }
 
-FUNCTION Uint rows_of_cells(const GridData grid, const Uint iy, const Uint iz) {
-  const Uint y = iy & ((1u << grid.log2_y) - 1u);
-  const Uint z = iz & ((1u << grid.log2_z) - 1u);
-  return ((z << grid.log2_y) | y) << grid.log2_x;
-}
 FUNCTION Uint cells_of(const GridData grid, const Vec3 p) {
   const Uint ix = cell_coordinates(p.x, grid.inverse_cell_x) & ((1u << grid.log2_x) - 1u);
-  return rows_of_cells(grid, cell_coordinates(p.y, grid.inverse_cell), cell_coordinates(p.z, grid.inverse_cell)) | ix;
+  const Uint iy = cell_coordinates(p.y, grid.inverse_cell);
+  const Uint iz = cell_coordinates(p.z, grid.inverse_cell);
+  return ROW_OF_CELLS(grid, iy, iz) | ix;
 }
 
 // Steps to the first and to the last of the cells around one along an axis of 2^log2 cells, each cell once.

@@ -1,4 +1,4 @@
-// The first surface that rays meet: exact shapes WIDTH rays at a time, meshes in turns.
+// The first surface that rays meet: exact shapes WIDTH rays at a time, then meshes (trace_mesh.h).
 #ifndef VITRUM_TRACE_H
 #define VITRUM_TRACE_H
 

@@ -148,7 +148,7 @@ FUNCTION void tree_start(TreeWalks* walks, const RayPacket* rays, const Float t_
   walks->waiting = (Uint)(0);
 }
 
-// The last t before t_max > 0.
+// The last t before t_max; no t is up to it if t_max <= 0.
 FUNCTION Float tree_before_end(const Float t_max) { return AS_FLOAT(AS_UINT(t_max) - 1u); }
 
 static __global const TreeLeaf* tree_leaf(__global const TreeLeaf* leaves, const uint child) {
@@ -195,9 +195,7 @@ static uint8 tree_chosen(const uint8 values, const uint8 lanes) {
 #if defined(__AVX2__) && !defined(VITRUM_PORTABLE)
   return as_uint8(__builtin_ia32_permvarsi256(as_int8(values), as_int8(lanes)));
 #else
-  uint8 chosen;
-  for (uint i = 0; i < 8; ++i) ((uint*)&chosen)[i] = ((const uint*)&values)[((const uint*)&lanes)[i]];
-  return chosen;
+  return shuffle(values, lanes);
 #endif
 }
 
@@ -209,13 +207,13 @@ static void tree_descend(TreeWalks* walks, const uint i, __global const TreeNode
   __global const float* planes = &node->planes[0][0][0];
   const TreeRays* r = &walks->rays;
   const uint near_x = LANE(r->near_x, uint, i), near_y = LANE(r->near_y, uint, i), near_z = LANE(r->near_z, uint, i);
-  const float3 inverse = LANE3(r->inverse, i), first = LANE3(r->enter, i), last = LANE3(r->leave, i);
-  const float8 x0 = fma(vload8(0, planes + near_x), (float8)(inverse.x), (float8)(-first.x));
-  const float8 y0 = fma(vload8(0, planes + near_y), (float8)(inverse.y), (float8)(-first.y));
-  const float8 z0 = fma(vload8(0, planes + near_z), (float8)(inverse.z), (float8)(-first.z));
-  const float8 x1 = fma(vload8(0, planes + (near_x ^ TREE_WIDTH)), (float8)(inverse.x), (float8)(-last.x));
-  const float8 y1 = fma(vload8(0, planes + (near_y ^ TREE_WIDTH)), (float8)(inverse.y), (float8)(-last.y));
-  const float8 z1 = fma(vload8(0, planes + (near_z ^ TREE_WIDTH)), (float8)(inverse.z), (float8)(-last.z));
+  const float3 inverse = LANE3(r->inverse, i), early = LANE3(r->enter, i), late = LANE3(r->leave, i);
+  const float8 x0 = fma(vload8(0, planes + near_x), (float8)(inverse.x), (float8)(-early.x));
+  const float8 y0 = fma(vload8(0, planes + near_y), (float8)(inverse.y), (float8)(-early.y));
+  const float8 z0 = fma(vload8(0, planes + near_z), (float8)(inverse.z), (float8)(-early.z));
+  const float8 x1 = fma(vload8(0, planes + (near_x ^ TREE_WIDTH)), (float8)(inverse.x), (float8)(-late.x));
+  const float8 y1 = fma(vload8(0, planes + (near_y ^ TREE_WIDTH)), (float8)(inverse.y), (float8)(-late.y));
+  const float8 z1 = fma(vload8(0, planes + (near_z ^ TREE_WIDTH)), (float8)(inverse.z), (float8)(-late.z));
   const float8 enter = tree_max(tree_max((float8)(LANE(walks->t_first, float, i)), x0), tree_max(y0, z0));
   const float8 leave = tree_min(tree_min((float8)(LANE(walks->t_last, float, i)), x1), tree_min(y1, z1));
   const int8 met = enter <= leave;

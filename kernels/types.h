@@ -33,8 +33,8 @@ typedef struct {
 typedef struct {
   uint closed;                 // 1: of a dielectric, and each edge has faces on both sides: who enters it leaves it
   uint material;
-  uint normals;                // its triangle t has the normals normal_corners[normals + 3 t] and following, with
-                               // wrap-around; NO_INDEX: it is flat
+  uint normals;                // its triangle t, of all meshes', has the normals normal_corners[normals + 3 t] and the
+                               // next two, modulo 2^32; NO_INDEX: it is flat
   uint texcoords;              // the same for texture coordinates; NO_INDEX: it has none
 } BodyData;
 

@@ -2,8 +2,8 @@
 // work-item.
 #include "gather.h"
 
-__kernel void gather_at(const uint count, __global const float* queries PHOTON_MAP_PARAMETERS,
-                        __global float* irradiance) {
+KERNEL void gather_at(const uint count, __global const float* queries PHOTON_MAP_PARAMETERS,
+                      __global float* irradiance) {
   const uint first = get_global_id(0) * WIDTH;
   const uint end = min(count, first + WIDTH);
   if (first >= end) return;

@@ -87,7 +87,8 @@ void run_info(const SceneArguments& arguments) {
   std::printf("kernels   ");
   for (const std::string& stage : stages_for(features)) std::printf(" %s", stage.c_str());
   const size_t shapes = bytes(data.spheres) + bytes(data.flats) + bytes(data.triangles) + bytes(data.positions) +
-                        bytes(data.normals) + bytes(data.texcoords);
+                        bytes(data.normals) + bytes(data.texcoords) + bytes(data.normal_corners) +
+                        bytes(data.texcoord_corners);
   std::printf("\nmemory     shapes %.3f MiB, textures %.3f MiB", static_cast<double>(shapes) / 0x1p20,
               features.textures ? static_cast<double>(bytes(texel_data(scene).texels)) / 0x1p20 : 0.0);
   if (features.mesh) {

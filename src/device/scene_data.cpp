@@ -163,6 +163,13 @@ class Builder {
   }
 
   void add_mesh(const Shape& shape, const Mesh& mesh) {
+    // Gathers take indices below 2^31.
+    for (const size_t floats : {data_.positions.size() + 3 * mesh.positions.size(),
+                                data_.normals.size() + 3 * mesh.normals.size(),
+                                data_.texcoords.size() + 2 * mesh.texcoords.size()})
+      if (floats >= size_t{1} << 31)
+        throw Error(shape.where, "with shape '" + shape.name + "' the meshes have more vertices than the kernels can number",
+                    "use meshes with fewer than 700 million of them in all");
     const uint32_t first = static_cast<uint32_t>(data_.triangles.size());
     const uint32_t first_position = static_cast<uint32_t>(data_.positions.size() / 3);
     const uint32_t first_normal = static_cast<uint32_t>(data_.normals.size() / 3);

@@ -74,9 +74,10 @@ double progressive_area(uint64_t pass) {
 
 kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_at_most, float radius,
                              uint32_t along_x) {
-  const float cell = radius * 1.001f;  // so that rounding never puts a neighbour two cells away
+  // So that rounding rarely puts a neighbour two cells away: not within 8,000 cells of the origin.
+  const float cell = radius * 1.001f;
   const auto log2_along_x = static_cast<uint32_t>(std::countr_zero(along_x));
-  uint32_t size[3];
+  uint32_t size[3];  // log2, in cubes
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> values;
     for (const glm::vec3& p : sample) values.push_back(p[axis]);
@@ -86,21 +87,20 @@ kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_a
     const double cells = std::min(static_cast<double>(extent) / cell, 4096.0);
     size[axis] = static_cast<uint32_t>(std::ceil(std::log2(std::max(cells, 1.0))));
   }
-  size[0] = std::max(size[0] + log2_along_x, LEAST_LOG2_BUCKET);
-  const uint32_t most = std::clamp(static_cast<uint32_t>(std::log2(static_cast<double>(cells_at_most + 1))), 8u, 22u);
+  const bool flat[3] = {size[0] <= 2, size[1] <= 1, size[2] <= 1};
+  const uint32_t least_x = LEAST_LOG2_BUCKET - log2_along_x;
+  size[0] = std::max(size[0], least_x);
+  const auto log2_most = static_cast<uint32_t>(std::log2(static_cast<double>(cells_at_most + 1)));
+  const uint32_t most = std::clamp(log2_most, 8u, 22u) - log2_along_x;
   // Spare cells go to the axes along which photons spread, so that places outside of the crowd rarely wrap into it.
-  const bool flat[3] = {size[0] <= LEAST_LOG2_BUCKET, size[1] <= 1, size[2] <= 1};
   while (size[0] + size[1] + size[2] < most && !(flat[0] && flat[1] && flat[2])) {
     int least = -1;
     for (int axis = 0; axis < 3; ++axis)
       if (!flat[axis] && (least < 0 || size[axis] < size[least])) least = axis;
     ++size[least];
   }
-  while (size[0] + size[1] + size[2] > most) {
-    const int first = size[0] > LEAST_LOG2_BUCKET ? 0 : 1;
-    --*std::max_element(size + first, size + 3);
-  }
-  return {static_cast<float>(along_x) / cell, 1.0f / cell, size[0], size[1], size[2], 0};
+  while (size[0] + size[1] + size[2] > most) --*std::max_element(size + (size[0] > least_x ? 0 : 1), size + 3);
+  return {static_cast<float>(along_x) / cell, 1.0f / cell, size[0] + log2_along_x, size[1], size[2], 0};
 }
 
 PhotonGrid::PhotonGrid(const KernelContext& context)

@@ -17,8 +17,8 @@ float automatic_radius(std::span<const glm::vec3> places, uint64_t count, double
 /// approach", ACM Transactions on Graphics 30 (2011).
 double progressive_area(uint64_t pass);
 
-/// A grid of cells a little larger than `radius` [m], 1 / `along_x` of that along x (a power of two), as many as the
-/// photons in `sample` are spread over, but not more than `cells_at_most` where that is 256 to 2^22.
+/// A grid of cells a little larger than `radius` [m], 1 / `along_x` of that along x (a power of two): about
+/// `cells_at_most`, but 2^22 at most, and fewer where the photons in `sample` lie close together along all axes.
 kernel::GridData choose_grid(std::span<const glm::vec3> sample, uint64_t cells_at_most, float radius, uint32_t along_x);
 
 /// Photons to look at, of a pass of `count`, before its grid is started: enough for each bucket to tell its room, so

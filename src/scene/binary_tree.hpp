@@ -45,6 +45,9 @@ class BinaryTree {
   BinaryNode* root() const { return root_; }
 
  private:
+  /// nullptr: Embree's error tells why.
+  BinaryNode* built(std::vector<RTCBuildPrimitive>& boxes, unsigned children, unsigned depth);
+
   struct Release {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
     void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }

@@ -211,6 +211,32 @@ TEST_CASE("where all photons of a bucket count they need no test, and elsewhere 
   check(gatherer.irradiance(sorted, queries), queries, [&](const Query& query) { return brute_within(query, photons, 0.1); });
 }
 
+TEST_CASE("what is known of a bucket is not taken for what another place's neighbours know of theirs") {
+  // A floor and, farther along z, a wall, with buckets of their own, two layers of cells each; on stripes of the floor a
+  // third of the photons comes from below. Two places by turns: while the one finds nothing under the floor of the next
+  // bucket, the other still looks at its last one.
+  Random random;
+  std::vector<cl_float8> photons;
+  std::vector<Query> queries;
+  const vec3 up(0, 1, 0), along(1, 0, 0);
+  const auto on_floor = [&] { return random.in_box(vec3(0, 0, -1), vec3(2, 0, 0)); };
+  const auto on_wall = [&] { return random.in_box(vec3(0, 0, 0.25f), vec3(0, 2, 1.2f)); };
+  for (int i = 0; i < 120'000; ++i) {
+    const bool is_floor = i % 2 == 0;
+    const vec3 p = is_floor ? on_floor() : on_wall(), n = is_floor ? up : along;
+    const bool behind = is_floor && i % 3 == 0 && static_cast<int>(std::floor(p.z / 0.32f)) % 2 != 0;
+    photons.push_back(photon(p, behind ? n : -n, random.in_box(vec3(0.1f), vec3(1))));
+  }
+  for (int pair = 0; pair < 200; ++pair) {
+    const vec3 places[] = {on_floor(), on_wall()};
+    for (int i = 0; i < 16; ++i) queries.push_back({places[i % 2], i % 2 == 0 ? up : along});
+  }
+  Gatherer& gatherer = shared_gatherer();
+  const SortedPhotons sorted = gatherer.grid(photons, 0.08f);
+  CHECK(sorted.map.bucket_counts.size() >= 16);
+  check(gatherer.irradiance(sorted, queries), queries, [&](const Query& query) { return brute_within(query, photons, 0.08); });
+}
+
 TEST_CASE("the k nearest photons are those of brute force") {
   Random random;
   const std::vector<cl_float8> photons = many_photons(random);

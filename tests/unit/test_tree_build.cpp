@@ -148,6 +148,16 @@ TEST_CASE("triangles that split badly stay within the stack") {
     }
     check_structure(build_tree(triangles), triangles);
   }
+  SUBCASE("each half the size of the one before, and many where they end") {
+    std::vector<TreeTriangle> triangles;
+    for (float s = 1e12f; s > 1e-22f; s *= 0.8f)
+      triangles.push_back({{s, 0, 0}, {0, s, 0}, {0, 0, s}, 0, static_cast<uint32_t>(triangles.size())});
+    for (int i = 0; i < 30000; ++i) {
+      const float s = 1e-22f / (1.0f + 0.003f * static_cast<float>(i));
+      triangles.push_back({{s, 0, 0}, {0, s, 0}, {0, 0, s}, 0, static_cast<uint32_t>(triangles.size())});
+    }
+    check_structure(build_tree(triangles), triangles);
+  }
   SUBCASE("along a line, each farther") {
     std::vector<TreeTriangle> triangles;
     for (uint32_t i = 0; i < 400; ++i) {

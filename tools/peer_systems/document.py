@@ -222,9 +222,9 @@ WHY = {
                "([limits.md](limits.md)).",
     "scaling": "It falls: in its first pass a process touches all of its memory for the first time, in pages that the system "
                "clears one by one. From 10^7 photons on it is flat.",
-    "traversal": "Where a tree fits the caches, rays of one direction meet few nodes each, and Embree's code for one ray is as "
-                 "short as ours; WIDTH rays in turns gain where nodes come from memory (`kernels/tree.h`).",
-    "gather": "A query looks at 2.9 times the photons that it finds, those in the cells about it, and those of random queries "
+    "traversal": "Where nodes come from memory, rays in turns gain, since each one's next node is fetched while the others go "
+                 "on; where a tree fits the caches, they gain less (`kernels/tree.h`).",
+    "gather": "A query looks at 2.1 times the photons that it finds, those in the cells about it, and those of random queries "
               "come from memory ([limits.md](limits.md)). The nanoflann of the goal did .44 and .10 M queries/s, this one does "
               "more (below).",
     "start": "PoCL takes .7 s to compile the smallest program of all, and .1 to .5 s for each of five to seven kernels, one after "
