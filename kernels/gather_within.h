@@ -53,6 +53,7 @@ FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, con
   const Uint iy = cell_coordinates(p.y, grid.inverse_cell);
   const Uint iz = cell_coordinates(p.z, grid.inverse_cell);
   const uint size_x = 1u << grid.log2_x;
+  const Uint most = (Uint)(min(size_x, MAX_CELLS_OF_ROW));  // oclgrind 21.10 knows no min of vector and scalar
   Uint asked = (Uint)0xffffffffu;  // the buckets that `sure` is of
   Mask sure = 0;
   for (uint lane = 0; lane < WIDTH; ++lane) around->count[lane] = 0;
@@ -71,7 +72,7 @@ FUNCTION void find_photons(const PhotonMap* map, const Vec3 p, const Vec3 n, con
       const Uint row = ROW_OF_CELLS(grid, iy + (uint)dy, iz + (uint)dz);
       const Uint row_end = row + size_x;
       Uint cell = row + (x_first & (size_x - 1u));
-      Uint left = min(x_last - x_first + 1u, min(size_x, MAX_CELLS_OF_ROW));
+      Uint left = min(x_last - x_first + 1u, most);
       left = reaches ? left : (Uint)0;
       while (ANY(left > 0u)) {
         const Uint bucket = cell >> grid.bucket_shift;
