@@ -114,9 +114,8 @@ FUNCTION Vec3 direct_light(const Scene scene, const uint light_index, __global c
   Mask lit = wanted & (exact_any_hit(scene, shadow, surface->from) == 0);
 #if HAS_MESH
   const Uint from = leaving(surface, surface->entering);
-  const uint unhidden = lane_bits(lit);
-  const MeshRays rays = mesh_rays(scene, &shadow, from, unhidden);
-  lit &= mask_of(~tree_any(&rays, unhidden, scene.nodes, scene.leaves));
+  const MeshRays rays = mesh_rays(scene, &shadow, from, lit);
+  lit &= mask_of(~tree_any(&rays, lane_bits(lit), scene.nodes, scene.leaves));
 #endif
 
   // [direct]

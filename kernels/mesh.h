@@ -27,21 +27,46 @@ FUNCTION Float triangle_error(const Corners* corners) {
   return SURFACE_ROUNDING * larger(larger(largest3(corners->a), largest3(corners->b)), largest3(corners->c));
 }
 
-// The body that a shape beyond the exact ones is.
+// The bodies that shapes beyond the exact ones are, in the lanes of `which`; 0 in the others.
+FUNCTION Uint bodies_of(const Scene scene, const Mask which, const Uint shape) {
+  return which ? shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
+}
 FUNCTION __global const BodyData* body_of(const Scene scene, const uint shape) {
   return &scene.bodies[shape - (scene.n_spheres + scene.n_flats)];
 }
 
-// A packet's rays, for the tree: those whose bits in `which` are set.
-FUNCTION MeshRays mesh_rays(const Scene scene, const RayPacket* packet, const Uint from, const uint which) {
-  const Mask leaves_mesh = mask_of(which) & (from != NO_INDEX) & ((from & FROM_MESH) != 0);
+// What a mesh has at its triangles' corners, as indices.
+typedef struct {
+  Mask there;
+  Uint a, b, c;                // 0 in other lanes
+} CornerIndices;
+
+// In the lanes of `which`. `start`: BodyData's normals or texcoords; `corners`: what that is an index of.
+FUNCTION CornerIndices corner_indices(__global const uint* corners, const Mask which, const Uint start,
+                                      const Uint primitive) {
+  CornerIndices indices;
+  indices.there = which & (start != NO_INDEX);
+  indices.a = indices.b = indices.c = (Uint)(0);
+  if (!ANY(indices.there)) return indices;
+  const Uint place = indices.there ? start + 3u * primitive : (Uint)(0);
+  const Uint first = GATHER(Uint, corners, place);
+  indices.there &= first != NO_INDEX;
+  indices.a = indices.there ? first : (Uint)(0);
+  indices.b = indices.there ? GATHER(Uint, corners + 1, place) : (Uint)(0);
+  indices.c = indices.there ? GATHER(Uint, corners + 2, place) : (Uint)(0);
+  return indices;
+}
+
+// A packet's rays, for the tree: those of the lanes of `which`.
+FUNCTION MeshRays mesh_rays(const Scene scene, const RayPacket* packet, const Uint from, const Mask which) {
+  const Mask leaves_mesh = which & (from != NO_INDEX) & ((from & FROM_MESH) != 0);
+  const Uint primitive = leaves_mesh ? from & FROM_TRIANGLE : (Uint)(0);
   MeshRays m;
   m.rays = *packet;
   m.rays.t_min = leaves_mesh ? 0.0f : packet->t_min;
   m.error = packet->t_min;
-  m.primitive = leaves_mesh ? from & FROM_TRIANGLE : (Uint)(0);
-  m.shape = leaves_mesh ? FIELD(Uint, uint, scene.triangles, shape, m.primitive) : (Uint)(NO_INDEX);
-  m.primitive = leaves_mesh ? m.primitive : (Uint)(NO_INDEX);
+  m.shape = leaves_mesh ? FIELD(Uint, uint, scene.triangles, shape, primitive) : (Uint)(NO_INDEX);
+  m.primitive = leaves_mesh ? primitive : (Uint)(NO_INDEX);
   m.front = (leaves_mesh & ((from & FROM_FRONT) != 0)) ? (Uint)(1) : (Uint)(0);
   return m;
 }

@@ -19,20 +19,14 @@ FUNCTION void set_mesh_surfaces(const Scene scene, const HitPacket* hits, const 
   const Vec3 to_c = subtract3(corners.c, corners.a);
   const Vec3 position = along3(along3(corners.a, u, to_b), v, to_c);
   const Vec3 geometric = normal_of(&corners);
-  const Uint body = which ? hits->shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
+  const Uint body = bodies_of(scene, which, hits->shape);
   Vec3 shading = geometric;
-  const Uint normals = FIELD(Uint, uint, scene.bodies, normals, body);
-  Mask is_smooth = which & (normals != NO_INDEX);
-  if (ANY(is_smooth)) {
-    const Uint place = is_smooth ? normals + 3u * primitive : (Uint)(0);
-    const Uint first = GATHER(Uint, scene.normal_corners, place);
-    is_smooth &= first != NO_INDEX;
-    const Uint a = is_smooth ? 3u * first : (Uint)(0);
-    const Uint b = is_smooth ? 3u * GATHER(Uint, scene.normal_corners + 1, place) : (Uint)(0);
-    const Uint c = is_smooth ? 3u * GATHER(Uint, scene.normal_corners + 2, place) : (Uint)(0);
-    const Vec3 n = along3(along3(scale3(v, GATHER3(scene.normals, c)), u, GATHER3(scene.normals, b)), w,
-                          GATHER3(scene.normals, a));
-    is_smooth &= dot3(n, geometric) > 1e-6f;
+  const CornerIndices normals =
+      corner_indices(scene.normal_corners, which, FIELD(Uint, uint, scene.bodies, normals, body), primitive);
+  if (ANY(normals.there)) {
+    const Vec3 n = along3(along3(scale3(v, GATHER3(scene.normals, 3u * normals.c)), u,
+                                 GATHER3(scene.normals, 3u * normals.b)), w, GATHER3(scene.normals, 3u * normals.a));
+    const Mask is_smooth = normals.there & (dot3(n, geometric) > 1e-6f);
     shading = select3(is_smooth, normalize_any3(n), geometric);
   }
   surface->t = which ? hits->t : surface->t;
@@ -44,24 +38,20 @@ FUNCTION void set_mesh_surfaces(const Scene scene, const HitPacket* hits, const 
   surface->entering = which ? hits->front != 0 : surface->entering;
   surface->from = which ? FROM_MESH | primitive : surface->from;
 #if HAS_TEXTURES
-  const Uint texcoords = FIELD(Uint, uint, scene.bodies, texcoords, body);
-  Mask is_mapped = which & (texcoords != NO_INDEX);
+  const CornerIndices mapped =
+      corner_indices(scene.texcoord_corners, which, FIELD(Uint, uint, scene.bodies, texcoords, body), primitive);
   Float texture_u = NAN;
   Float texture_v = NAN;
-  if (ANY(is_mapped)) {
-    const Uint place = is_mapped ? texcoords + 3u * primitive : (Uint)(0);
-    const Uint first = GATHER(Uint, scene.texcoord_corners, place);
-    is_mapped &= first != NO_INDEX;
-    const Uint a = is_mapped ? 2u * first : (Uint)(0);
-    const Uint b = is_mapped ? 2u * GATHER(Uint, scene.texcoord_corners + 1, place) : (Uint)(0);
-    const Uint c = is_mapped ? 2u * GATHER(Uint, scene.texcoord_corners + 2, place) : (Uint)(0);
-    texture_u = w * GATHER(Float, scene.texcoords, a) + u * GATHER(Float, scene.texcoords, b) +
-                v * GATHER(Float, scene.texcoords, c);
-    texture_v = w * GATHER(Float, scene.texcoords + 1, a) + u * GATHER(Float, scene.texcoords + 1, b) +
-                v * GATHER(Float, scene.texcoords + 1, c);
+  if (ANY(mapped.there)) {
+    __global const float* us = scene.texcoords;
+    __global const float* vs = scene.texcoords + 1;
+    texture_u = w * GATHER(Float, us, 2u * mapped.a) + u * GATHER(Float, us, 2u * mapped.b) +
+                v * GATHER(Float, us, 2u * mapped.c);
+    texture_v = w * GATHER(Float, vs, 2u * mapped.a) + u * GATHER(Float, vs, 2u * mapped.b) +
+                v * GATHER(Float, vs, 2u * mapped.c);
   }
-  surface->u = which ? (is_mapped ? texture_u : NAN) : surface->u;
-  surface->v = which ? (is_mapped ? texture_v : NAN) : surface->v;
+  surface->u = which ? (mapped.there ? texture_u : NAN) : surface->u;
+  surface->v = which ? (mapped.there ? texture_v : NAN) : surface->v;
 #endif
 }
 
@@ -144,8 +134,7 @@ FUNCTION void mend_media(const Scene scene, const MeshRays* rays, const Mask ast
 // The lanes whose rays leave a closed body.
 FUNCTION Mask leave_closed(const Scene scene, const MeshRays* rays) {
   const Mask leave = rays->shape != NO_INDEX;
-  const Uint body = leave ? rays->shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
-  return leave & (FIELD(Uint, uint, scene.bodies, closed, body) != 0);
+  return leave & (FIELD(Uint, uint, scene.bodies, closed, bodies_of(scene, leave, rays->shape)) != 0);
 }
 
 #endif
@@ -153,7 +142,7 @@ FUNCTION Mask leave_closed(const Scene scene, const MeshRays* rays) {
 // Replaces the exact shapes in the lanes of `active` by the triangles that come before them.
 FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const Uint from, const Mask active,
                          SurfacePacket* surface, Uint* media) {
-  MeshRays rays = mesh_rays(scene, packet, from, lane_bits(active));
+  MeshRays rays = mesh_rays(scene, packet, from, active);
   HitPacket exact;
   exact.t = surface->t;
   exact.shape = surface->from;
@@ -182,7 +171,7 @@ FUNCTION void trace_mesh(const Scene scene, const RayPacket* packet, const Uint 
 #if HAS_CONTACTS
   const Uint exact_material = active ? surface->material : (Uint)(0);
   const Mask exact_is_opaque = FIELD(Uint, uint, scene.materials, surface, exact_material) != SURFACE_DIELECTRIC;
-  const Uint body = met ? hits.shape - (scene.n_spheres + scene.n_flats) : (Uint)(0);
+  const Uint body = bodies_of(scene, met, hits.shape);
   const Uint material = met ? FIELD(Uint, uint, scene.bodies, material, body) : exact_material;
   Mask transparent = active & (FIELD(Uint, uint, scene.materials, surface, material) == SURFACE_DIELECTRIC);
   const Mask hidden = hidden_by_exact(scene, packet, &hits, met & transparent, exact_is_opaque, surface);

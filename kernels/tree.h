@@ -312,13 +312,12 @@ static void tree_descend_each(TreePlaces* places, TreeWalks* walks, __global con
   }
 }
 
-// Replaces hits by the first triangle in (t_min, t_max) if that comes before them, for each lane whose bit in `which`
-// is set. The bits of those that it replaced.
-static uint tree_closest(const MeshRays* rays, const uint which, __global const TreeNode* nodes,
-                         __global const TreeLeaf* leaves, HitPacket* hits) {
+// The rays whose bits in `which` are set look for triangles in (t_min, t_last]: for one, if `any`, or for the first, which
+// replaces its lane of *hits if that comes later. The bits of those that found one.
+FUNCTION uint tree_search(const MeshRays* rays, const uint which, __global const TreeNode* nodes,
+                          __global const TreeLeaf* leaves, const Float t_last, const int any, HitPacket* hits) {
   TreeWalks walks;
-  const Float end = rays->rays.t_max;
-  tree_start(&walks, &rays->rays, rays->rays.t_min, hits->t < end ? hits->t : tree_before_end(end));
+  tree_start(&walks, &rays->rays, rays->rays.t_min, t_last);
   uint found = 0;
   TreePlaces places = {which, 0};
   while (places.at_node | places.at_leaf) {
@@ -329,49 +328,42 @@ static uint tree_closest(const MeshRays* rays, const uint which, __global const 
       __global const TreeLeaf* leaf = tree_leaf(leaves, LANE(walks.child, uint, i));
       float4 t, u, v;
       int4 front;
-      const uint met = tree_leaf_hits(&walks, i, leaf, &t, &u, &v, &front);
-      for (uint mask = met; mask; mask &= mask - 1) {
+      uint waiting = LANE(walks.waiting, uint, i);
+      for (uint mask = tree_leaf_hits(&walks, i, leaf, &t, &u, &v, &front); mask; mask &= mask - 1) {
         const uint lane = lowest_bit(mask);
-        const Hit best = hit_of(hits, i), candidate = tree_hit(leaf, lane, t, u, v, tree_mask4(front));
-        if (!tree_before(&candidate, &best) || tree_left_behind(rays, i, leaf, lane, candidate.front)) continue;
+        const Hit candidate = tree_hit(leaf, lane, t, u, v, tree_mask4(front));
+        if (!any) {
+          const Hit best = hit_of(hits, i);
+          if (!tree_before(&candidate, &best)) continue;
+        }
+        if (tree_left_behind(rays, i, leaf, lane, candidate.front)) continue;
+        found |= 1u << i;
+        if (any) {
+          waiting = 0;
+          break;
+        }
         set_hit(hits, i, candidate);
         SET_LANE(walks.t_last, float, i, candidate.t);
-        found |= 1u << i;
       }
-      tree_pop(&walks, i, LANE(walks.waiting, uint, i), nodes, leaves);
+      tree_pop(&walks, i, waiting, nodes, leaves);
       tree_sort_in(&places, i, LANE(walks.child, uint, i));
     }
   }
   return found;
 }
 
+// Replaces hits by the first triangle in (t_min, t_max) if that comes before them, for each lane whose bit in `which`
+// is set. The bits of those that it replaced.
+static uint tree_closest(const MeshRays* rays, const uint which, __global const TreeNode* nodes,
+                         __global const TreeLeaf* leaves, HitPacket* hits) {
+  const Float end = rays->rays.t_max;
+  return tree_search(rays, which, nodes, leaves, hits->t < end ? hits->t : tree_before_end(end), 0, hits);
+}
+
 // Is there a triangle in (t_min, t_max)? For each lane whose bit in `which` is set, as bits.
 static uint tree_any(const MeshRays* rays, const uint which, __global const TreeNode* nodes,
                      __global const TreeLeaf* leaves) {
-  TreeWalks walks;
-  tree_start(&walks, &rays->rays, rays->rays.t_min, tree_before_end(rays->rays.t_max));
-  uint any = 0;
-  TreePlaces places = {which, 0};
-  while (places.at_node | places.at_leaf) {
-    tree_descend_each(&places, &walks, nodes, leaves);
-    uint bits = places.at_leaf;
-    for (places.at_leaf = 0; bits; bits &= bits - 1) {
-      const uint i = lowest_bit(bits);
-      __global const TreeLeaf* leaf = tree_leaf(leaves, LANE(walks.child, uint, i));
-      float4 t, u, v;
-      int4 front;
-      uint met = tree_leaf_hits(&walks, i, leaf, &t, &u, &v, &front);
-      while (met && tree_left_behind(rays, i, leaf, lowest_bit(met), tree_mask4(front) >> lowest_bit(met) & 1u))
-        met &= met - 1;
-      if (met) {
-        any |= 1u << i;
-        continue;
-      }
-      tree_pop(&walks, i, LANE(walks.waiting, uint, i), nodes, leaves);
-      tree_sort_in(&places, i, LANE(walks.child, uint, i));
-    }
-  }
-  return any;
+  return tree_search(rays, which, nodes, leaves, tree_before_end(rays->rays.t_max), 1, 0);
 }
 
 #define TREE_MAX_BORDERS 4

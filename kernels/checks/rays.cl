@@ -17,9 +17,6 @@ static MeshRays rays_of(__global const float* rays, const uint first, const uint
   return taken;
 }
 
-// The lanes of rays that there are, as bits.
-static uint lanes_of(const uint first, const uint end) { return (2u << (end - first - 1)) - 1; }
-
 // Where each ray meets the first triangle, INFINITY: nowhere; and which that is.
 KERNEL void closest(const uint count, __global const TreeNode* nodes, __global const TreeLeaf* leaves,
                     __global const float* rays, __global float* t, __global uint* primitive) {
@@ -32,7 +29,7 @@ KERNEL void closest(const uint count, __global const TreeNode* nodes, __global c
   hits.shape = hits.primitive = (Uint)(TREE_EMPTY);
   hits.u = hits.v = 0.0f;
   hits.front = (Uint)(0);
-  tree_closest(&taken, lanes_of(first, end), nodes, leaves, &hits);
+  tree_closest(&taken, lane_bits(lanes_below(first, end)), nodes, leaves, &hits);
   for (uint i = first; i < end; ++i) {
     t[i] = LANE(hits.t, float, i - first);
     primitive[i] = LANE(hits.primitive, uint, i - first);
@@ -46,6 +43,6 @@ KERNEL void occluded(const uint count, __global const TreeNode* nodes, __global 
   const uint end = min(count, first + WIDTH);
   if (first >= end) return;
   const MeshRays taken = rays_of(rays, first, end);
-  const uint any = tree_any(&taken, lanes_of(first, end), nodes, leaves);
+  const uint any = tree_any(&taken, lane_bits(lanes_below(first, end)), nodes, leaves);
   for (uint i = first; i < end; ++i) met[i] = any >> (i - first) & 1u;
 }

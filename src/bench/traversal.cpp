@@ -100,7 +100,7 @@ class Traversal {
     return sum;
   }
   void run(const cl::Kernel& kernel) {
-    device_.launch("rays", kernel, (count_ + device_.width() - 1) / device_.width());
+    device_.launch("rays", kernel, device_.packets(count_));
     device_.finish();
   }
 

@@ -76,6 +76,8 @@ class Device {
   const DeviceInfo& info() const { return info_; }
   /// Rays per work-item: kernels/portability.h's WIDTH.
   unsigned width() const { return width_; }
+  /// Work-items for `count` entries of a kernel that takes WIDTH of them at a time.
+  size_t packets(size_t count) const { return (count + width_ - 1) / width_; }
 
   /// Builds `source`; a failure shows the compiler's log and is our bug or the driver's.
   cl::Program build(const std::string& name, const std::string& source, const std::string& options) const;

@@ -102,7 +102,7 @@ struct CameraPass::State {
     if (context.features.caustics) next = set_map_arguments(kernel, next, *map, scene);
     if (patches) next = patches->set_arguments_of(kernel, next);
     set_arguments(kernel, next, film_stride, film, counts);
-    context.device.launch("camera", kernel, context.packets(last_slot - first_slot));
+    context.device.launch("camera", kernel, context.device.packets(last_slot - first_slot));
   }
 };
 

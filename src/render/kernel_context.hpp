@@ -26,9 +26,6 @@ struct KernelContext {
   const DeviceScene& device_scene;
   const Features& features;
   Launches launches{};
-
-  /// Work-items for `count` entries of a kernel that takes WIDTH of them at a time.
-  size_t packets(size_t count) const { return (count + device.width() - 1) / device.width(); }
 };
 
 /// Stride for arrays of fields with room for `count` entries: whole SIMD lanes, and not a power of two, or all fields

@@ -39,7 +39,7 @@ PatchView::PatchView(const KernelContext& context) : context_(context) {
   cl::Kernel look = context.kernels.get("look_at_corners");
   const unsigned next = context.device_scene.set_arguments(look);
   set_arguments(look, next, context.device_scene.camera, context.data.eye_media, corner_stride, at_corners);
-  device.launch("patches: look", look, context.packets(corners));
+  device.launch("patches: look", look, device.packets(corners));
   std::vector<float> fields;    // by field and corner
   for (size_t field = 0; field < VIEW_FIELDS; ++field) {
     const std::vector<float> values = device.read(at_corners, field * corner_stride, corners);

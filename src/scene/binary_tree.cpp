@@ -61,7 +61,7 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
   auto* node =
       static_cast<BinaryNode*>(rtcThreadLocalAlloc(allocator, offsetof(BinaryNode, child), alignof(BinaryNode)));
   node->triangles = static_cast<uint32_t>(count);
-  for (size_t i = 0; i < count; ++i) node->leaf.triangle[i] = primitives[i].primID;
+  for (size_t i = 0; i < count; ++i) node->triangle[i] = primitives[i].primID;
   return node;
 }
 

@@ -15,11 +15,8 @@ namespace vitrum {
 
 /// Lies in memory of Embree's, in an order that hangs on the threads.
 struct BinaryNode {
-  struct Leaf {
-    uint32_t triangle[TREE_LEAF_WIDTH];      ///< indices of primitives
-  };
   uint32_t triangles = 0;                    ///< of a leaf; 0: a node
-  Leaf leaf;
+  uint32_t triangle[TREE_LEAF_WIDTH];        ///< of a leaf: indices of primitives
   // A leaf ends here.
   BinaryNode* child[2];
   RTCBounds bounds[2];                       ///< the children's

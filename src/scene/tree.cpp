@@ -85,7 +85,7 @@ class Flattener {
   RTCBounds bounds_of(const BinaryNode& leaf) const {
     glm::vec3 low(INFINITY), high(-INFINITY);
     for (uint32_t i = 0; i < leaf.triangles; ++i) {
-      const TreeTriangle& t = triangles_[leaf.leaf.triangle[i]];
+      const TreeTriangle& t = triangles_[leaf.triangle[i]];
       low = glm::min(low, glm::min(t.a, glm::min(t.b, t.c)));
       high = glm::max(high, glm::max(t.a, glm::max(t.b, t.c)));
     }
@@ -110,7 +110,7 @@ class Flattener {
 
   uint32_t leaf(const BinaryNode& built) {
     std::array<uint32_t, TREE_LEAF_WIDTH> order;
-    const auto last = std::copy_n(built.leaf.triangle, built.triangles, order.begin());
+    const auto last = std::copy_n(built.triangle, built.triangles, order.begin());
     std::sort(order.begin(), last);
     TreeLeaf& leaf = tree_.leaves.emplace_back();
     for (auto& corner : leaf.corners)

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "render/photon_tree.hpp"
 #include "verify/estimates.hpp"
+#include "verify/gatherer.hpp"
 #include "verify/groups.hpp"
 #include "verify/patch_pictures.hpp"
 #include "verify/photon_run.hpp"
@@ -74,21 +74,17 @@ class Gathering {
       : device_(context.device),
         shot_(with_fixed_radius(scene)),
         run_(shot_, context.device, context.kernels),
-        kernel_(device_.build("checks/gather.cl", kernel_source(context.kernels, {"checks/gather.cl"}),
-                              "-cl-std=CL1.2" + scene_features(scene).build_options()),
-                "gather_at"),
+        kernel_(gather_kernel(device_, context.kernels, scene_features(scene))),
         scene_(scene),
         count_(count) {
-    std::vector<float> queries;
+    std::vector<Query> queries;
     for (uint32_t k = 0; k < places; ++k) {
       // Vogel's spiral.
       const double r = reach * std::sqrt((k + 0.5) / places), phi = k * pi * (3.0 - std::sqrt(5.0));
-      for (const double value : {r * std::cos(phi), -2.0, r * std::sin(phi), 0.0, 1.0, 0.0})
-        queries.push_back(static_cast<float>(value));
+      queries.push_back({glm::vec3(glm::dvec3(r * std::cos(phi), -2.0, r * std::sin(phi))), {0, 1, 0}});
       truth.emplace_back(r);
     }
-    queries_ = device_.upload(queries, "inputs of checks");
-    irradiance_ = device_.allocate<float>(size_t{3} * places, "outputs of checks");
+    queries_ = placed_queries(device_, queries);
   }
 
   /// Irradiance at each place by pass `pass` of `replicate` [W/m2].
@@ -96,13 +92,9 @@ class Gathering {
     run_.run(pass, replicate, pass * count_, count_);
     const bool nearest = scene_.photons.estimate == PhotonEstimate::nearest;
     if (nearest) fill_photon_tree(device_, tree_, read_photons(device_, run_.map()), scene_.photons.max_radius);
-    const auto places = static_cast<uint32_t>(truth.size());
-    set_arguments(kernel_, 0, places, queries_);
-    set_arguments(kernel_, set_map_arguments(kernel_, 2, nearest ? tree_ : run_.map(), scene_), irradiance_);
-    device_.launch("checks", kernel_, (places + device_.width() - 1) / device_.width());
-    const std::vector<float> values = device_.read(irradiance_, 0, irradiance_.size());
+    gather(device_, kernel_, nearest ? tree_ : run_.map(), scene_, queries_);
     std::vector<double> red;
-    for (size_t k = 0; k < places; ++k) red.push_back(static_cast<double>(values[3 * k]));
+    for (const glm::vec3& found : irradiance_of(device_, queries_)) red.push_back(static_cast<double>(found.x));
     return red;
   }
 
@@ -128,7 +120,7 @@ class Gathering {
   cl::Kernel kernel_;
   const Scene& scene_;
   uint64_t count_;
-  Buffer<float> queries_, irradiance_;
+  PlacedQueries queries_;
 };
 
 /// The bias of `values` as a multiple of `expected` at each place, weighted by that.

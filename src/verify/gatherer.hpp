@@ -57,7 +57,7 @@ inline void gather(Device& device, cl::Kernel& kernel, const PhotonMap& map, con
                    const PlacedQueries& queries) {
   set_arguments(kernel, 0, queries.count, queries.places);
   set_arguments(kernel, set_map_arguments(kernel, 2, map, scene), queries.irradiance);
-  device.launch("gather", kernel, (queries.count + device.width() - 1) / device.width());
+  device.launch("gather", kernel, device.packets(queries.count));
   device.finish();
 }
 
